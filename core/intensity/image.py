@@ -221,9 +221,9 @@ class _Piece:
     step: int   # one of so many points weighs on farther cells
 
     @property
-    def window(self) -> int:
-        """Number of the window along the road whose intensities it is compared with."""
-        return self.number // IMAGE.pieces_per_window
+    def window(self) -> tuple[int, int]:
+        """The road and the number along it of the window whose intensities it is compared with."""
+        return self.road, self.number // IMAGE.pieces_per_window
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
@@ -238,8 +238,8 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
         pieces, = in_step([pieces_of_image(road_points, settings)], road_points.executor, progress.part(0.0, 0.3))
     grid, work = _grid_of(pieces, settings)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(IMAGE.ranking_window, piece.road, piece.window))))
-                    for piece in dict.fromkeys(piece for _, pieces in work for piece in pieces)}   # most touch several tiles
+    states = {window: road_points.state(*_span(IMAGE.ranking_window, *window)) for window in dict.fromkeys(piece.window for piece in pieces)}
+    image.pieces = {piece: digest((settings, piece, states[piece.window])) for piece in pieces}   # most touch several tiles
     image.places = np.array([(piece.road, piece.number, *piece.extent, *piece.across) for piece in image.pieces], np.int64)
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
@@ -391,11 +391,10 @@ def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]
     for tile, pieces in tiles:
         check_cancelled()
         for piece in pieces:
-            window = piece.road, piece.window
-            if window not in limits:
-                limits[window] = _limits_of_window(road_points, *window, settings)
+            if piece.window not in limits:
+                limits[piece.window] = _limits_of_window(road_points, *piece.window, settings)
             if piece not in sums:
-                sums[piece] = _sums_of_piece(road_points, piece, settings, *limits[window])
+                sums[piece] = _sums_of_piece(road_points, piece, settings, *limits[piece.window])
         result.append(grid.tile(*tile, [sums[piece] for piece in pieces]))
     return result
 

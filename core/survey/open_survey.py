@@ -33,7 +33,7 @@ from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
-from .survey_reader import SurveyReader
+from .survey_reader import read_cloud
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
@@ -172,24 +172,29 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from)
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
-                         None if shared is None else shared.points)
-    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
+    folder = None if shared is None else shared.points
+    if folder is not None:
+        folder.mkdir(exist_ok=True)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame), folder)
+    choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
-    _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
-    _say_left_out(files, frame, reader, settings, progress)
-    height = float(np.mean(list(reader.heights.values())))
-    feet = _check_height(height, crs, (fitted.seen, reader.moved), progress)
-    survey = _survey_of(files, frame, reader, settings, crs, progress)
+    parts_at = READING.parts_progress * read_at
+    cloud = read_cloud(files, frame, store, choice, settings.block, THREADS if shared is None else shared.reading, progress.part(0.0, parts_at))
+    _say_left_out(files, frame, cloud, settings, progress)
+    height = float(np.mean(list(cloud.heights.values())))
+    feet = _check_height(height, crs, (fitted.seen, cloud.moved), progress)
+    survey = _survey_of(files, frame, cloud, settings, crs, progress)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
-    parts_at = read_at if shared is None else READING.parts_progress * read_at
-    _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
-    _put_in_order(survey, shared, progress.part(parts_at, read_at))
-    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
-    _see_passes(survey, settings.fit_passes, store, shared, progress)
+    _tell_scanners_apart(survey, cloud, progress.part(parts_at, parts_at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
+    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
+    _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
     _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
     if shared is not None:
@@ -206,26 +211,12 @@ def _intensity_source(samples, settings, one_scale, progress):
     return intensity, rounding
 
 
-def _read_points(reader, files, block, shared, progress):
-    if shared is None:
-        reader.read(files, block, THREADS, progress)
-    else:
-        shared.points.mkdir(exist_ok=True)
-        reader.read(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
-
-
-def _survey_of(files, frame, reader, settings, crs, progress):
+def _survey_of(files, frame, cloud, settings, crs, progress):
     """The Survey of points as they were read."""
-    total, store = sum(file.count for file in files), reader.store
-    scanner_field, scanners = reader.summary.census.choose(settings.scanner_field)
-    return Survey(files, frame, store, crs, reader.heights, scanner_field, scanners, reader.summary.brightest > reader.summary.darkest,
+    total, store = sum(file.count for file in files), cloud.store
+    scanner_field, scanners = cloud.summary.census.choose(settings.scanner_field)
+    return Survey(files, frame, store, crs, cloud.heights, scanner_field, scanners, cloud.summary.brightest > cloud.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
-
-
-def _put_in_order(survey, shared, progress):
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):
@@ -235,15 +226,15 @@ def _say_brightness(survey, intensity, settings, samples, progress):
         progress.warn(note)
 
 
-def _lay_scanners_and_passes(survey, again, feet, shared, progress):
+def _lay_scanners_and_passes(survey, again, feet, progress):
     """Lay scanners on each other and, where they drive `again`, passes; m that the mounting of scanners leaves open across."""
-    folder, mounted = shared.points if shared else None, 0.0
+    mounted = 0.0
     if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
         read_at = READING.read_progress if again else 1.0
-        mounted = lay_scanners(survey, progress.part(read_at, read_at), folder)
+        mounted = lay_scanners(survey, progress.part(read_at, read_at))
     if again:
-        adjust_passes(survey, progress.part(READING.read_progress, 1.0), folder)
+        adjust_passes(survey, progress.part(READING.read_progress, 1.0))
     return mounted
 
 
@@ -280,18 +271,18 @@ def _frame_of(files, trajectory, crs, has_time, time_note, progress):
     return frame
 
 
-def _say_left_out(files, frame, reader, settings, progress):
+def _say_left_out(files, frame, cloud, settings, progress):
     """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
-    total, left = sum(file.count for file in files), reader.summary
-    if not reader.store.count:
-        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    total, left = sum(file.count for file in files), cloud.summary
+    if not cloud.store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, cloud, settings.corridor))
     if left.excluded:
         tell = progress.warn if left.excluded > READING.much_excluded * total else progress.info
         tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. Give the whole trajectory.")
-    for doubt in filter(None, (reader.moved, reader.holes)):
+    for doubt in filter(None, (cloud.moved, cloud.holes)):
         progress.warn(doubt)
 
 
@@ -308,12 +299,8 @@ def _check_height(height, crs, explained, progress):
     return feet
 
 
-def _see_passes(survey, fit_passes, measured, shared, progress):
-    """Put points that were moved since they were measured in order, and tell where roads and carriageways do not fit each other."""
-    if shared is not None and survey.store is not measured:
-        for file in shared.ordered.iterdir():
-            file.unlink()
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+def _see_passes(survey, fit_passes, progress):
+    """Tell where roads and carriageways do not fit each other."""
     if len(survey.frame.roads) > 1:
         for warning in warnings_of_levels(survey.frame):
             progress.warn(warning)
@@ -331,9 +318,9 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     return max((length for length in lengths if length * density <= READING.section_points), default=STORE.section_length)
 
 
-def _sampled(survey, reader, progress):
+def _sampled(survey, cloud, progress):
     """Times and places of the points sampled, each once, and a word on those that files have in common."""
-    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
+    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *cloud.sampled))
     if len(survey.files) == 1 or not may_overlap(survey.files):
         return time, place
     rows = distinct_rows(time, place)
@@ -343,7 +330,7 @@ def _sampled(survey, reader, progress):
     return time[rows], place[rows]
 
 
-def _tell_scanners_apart(survey, reader, progress):
+def _tell_scanners_apart(survey, cloud, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
@@ -351,12 +338,12 @@ def _tell_scanners_apart(survey, reader, progress):
 
     if not survey.has_time:
         return
-    time, place = _sampled(survey, reader, progress)
+    time, place = _sampled(survey, cloud, progress)
     if len(survey.files) > 1:
         check_measured_once(time, place * COORDINATE_SCALE)
     if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
         return
-    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), cloud.slots.stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
         survey.scanners = list(range(survey.splitter.poses.scanners))
@@ -483,11 +470,11 @@ def _angles_exchanged(x, y, crs):
     return to_degrees.transform(lat, lon, direction="INVERSE")
 
 
-def _no_overlap(files, frame, reader, corridor):
-    if reader.summary.excluded == sum(file.count for file in files):
+def _no_overlap(files, frame, cloud, corridor):
+    if cloud.summary.excluded == sum(file.count for file in files):
         return "All points are withheld or classified as noise (LAS classes 7 and 18). Give the cloud as it was before its classification."
-    if reader.summary.without_time:
-        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside its time, "
+    if cloud.summary.without_time:
+        return (f"No point was measured while the trajectory was driven: {cloud.summary.without_time} points lie outside its time, "
                 f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
     return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
             "use one CRS.")

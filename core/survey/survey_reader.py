@@ -16,7 +16,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
-from .blocks import BlockReader, BlockSummary, ChosenPoints, PointChoice, estimate_sensor_height
+from .blocks import BlockReader, BlockSummary, PointChoice, estimate_sensor_height
 from .coverage import CountedCells
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
@@ -31,46 +31,36 @@ from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import READING
 
 
-class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey, complete after `read`.
+@dataclass(frozen=True)
+class ReadCloud:
+    """The points of all files, and statistics of the whole survey."""
 
-    summary : BlockSummary of all points
-    heights, moved, holes : {pass number: metres from the trajectory down to the road}, and as of `Coverage.warnings`
-    slots, sampled : TimeSlots of the points by which scanners are distinguished that no field distinguishes; their (N,) times and (N, 3) units
-        of 0.1 mm, in no order; without times none
-    """
+    store: SectionStore
+    summary: BlockSummary   # of all points
+    heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    moved: str   # moved, holes: as of `Coverage.warnings`
+    holes: str
+    slots: TimeSlots   # of the points by which scanners are distinguished that no field distinguishes
+    sampled: list[tuple[np.ndarray, np.ndarray]]   # their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
 
-    def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
-        self.frame, self.store, self.choice = frame, store, choice
-        self.summary = BlockSummary()
-        self.slots = TimeSlots(1)
-        self._chosen: ChosenPoints
 
-    @property
-    def sampled(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """See above."""
-        return self._chosen.sampled
-
-    def read(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
-        """Read all files, `block` points at a time, as a phase."""
-        self.slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
-        blocks = BlockReader(self.frame, self.choice, self.slots)
-        drop, ranges = _rough_height(files, blocks, block)
-        self._chosen = blocks.chosen(drop)
-        source = _PartsOfFiles(files, self.store, blocks, drop, ranges, block)
-        phase = Phase(_read_part, source, (), source.place, _join_parts)
-        points = block if self.store.folder is None else READING.part_points   # threads read block by block
-        for part in executor.run(phase, source.items(points), progress):
-            self._take_part(part)
-        self.heights, (self.moved, self.holes) = self._chosen.histogram.heights(), self._chosen.coverage.warnings()
-
-    def _take_part(self, part):
-        """Take a part that somebody else read, in the order of the files."""
-        self.summary.join(part.summary)
-        self._chosen.histogram.join(part.drops)
-        self._chosen.coverage.join(part.coverage)
-        self._chosen.sampled.append((part.times, part.places))
-        self.store.adopt(part.index, self.store.folder)
+def read_cloud(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
+               progress: Progress) -> ReadCloud:
+    """Read all files into a store, `block` points at a time, as a phase."""
+    slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
+    blocks = BlockReader(frame, choice, slots)
+    drop, ranges = _rough_height(files, blocks, block)
+    chosen, summary = blocks.chosen(drop), BlockSummary()
+    source = _PartsOfFiles(files, store, blocks, drop, ranges, block)
+    phase = Phase(_read_part, source, (), source.place, _join_parts)
+    points = block if store.folder is None else READING.part_points   # threads read block by block
+    for part in executor.run(phase, source.items(points), progress):
+        summary.join(part.summary)
+        chosen.histogram.join(part.drops)
+        chosen.coverage.join(part.coverage)
+        chosen.sampled.append((part.times, part.places))
+        store.adopt(part.index, store.folder)
+    return ReadCloud(store, summary, chosen.histogram.heights(), *chosen.coverage.warnings(), slots, chosen.sampled)
 
 
 def _rough_height(files, blocks, size):
@@ -178,36 +168,52 @@ def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
 
 class UnorderedPoints:
-    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are."""
+    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are.
 
-    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path):
-        self.store, self.finishing, self.folder = store, finishing, folder
+    moves : `moved` gives Columns of moved points, and `reach` by how many m of station at most; None where points stay
+    """
+
+    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path | None, moves: Any = None):
+        self.store, self.finishing, self.folder, self.moves = store, finishing, folder, moves
+        self.beyond = 0 if moves is None else int(np.ceil(moves.reach / store.section_length))   # sections into which points may move
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
         return Recipe("core.survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
-                                                               finishing=self.finishing, folder=str(self.folder)))
+                                                               finishing=self.finishing, folder=str(self.folder), moves=self.moves))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
         """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
-        length = self.store.section_length
+        length, items = self.store.section_length, self.store.stretches(self.store.numbers())
+        roads = [None, *(road for road, *_ in items), None]
+        items = [(road, first - self.beyond * (before != road), end + self.beyond * (after != road))
+                 for (road, first, end), before, after in zip(items, roads, roads[2:])]
         phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length))
-        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
-        self.store.take_over(StoreIndex.join(parts), self.folder)
+        self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), self.folder)
+
+    def moved_to(self, stretch: Stretch) -> SectionStore:
+        """A store of the points that may lie in a stretch once they are moved."""
+        (road, first, end), store = stretch, SectionStore(self.store.dtype, self.store.section_length)
+        ends = (np.array([first, end]) * store.section_length + [-self.moves.reach, self.moves.reach]) / COORDINATE_SCALE
+        for section in range(first - self.beyond, end + self.beyond):
+            records = self.store.section(road, section)
+            store.append(road, self.moves.moved(records[slice(*np.searchsorted(records["s"], ends).tolist())]))
+        return store
 
 
-def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
+def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str, moves: Any) -> UnorderedPoints:
     """What `UnorderedPoints.recipe` describes."""
     store = opened_store(points_folder, **contents)
     store.finish = finishing
-    return UnorderedPoints(store, finishing, Path(folder))
+    return UnorderedPoints(store, finishing, Path(folder), moves)
 
 
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
     """The phase: the points of some sections, in order, in a file of the folder."""
     try:
-        with SectionStore(source.store.dtype, source.store.section_length, source.folder).part() as part:
-            return source.store.written_in_order(source.store.in_stretch(item), part)
+        store = source.store if source.moves is None else source.moved_to(item)
+        with SectionStore(store.dtype, store.section_length, source.folder).part() as part:
+            return store.written_in_order(store.in_stretch(item), part)
     finally:
         # they are removed when all is in order, which Windows refuses for files that are open
         close_files()

@@ -1,5 +1,6 @@
 """The stages of a road map, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -35,10 +36,10 @@ PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected
 
 
 def functions_of(phase, items):
-    """The names of the functions whose items these are; several phases may be run as one."""
+    """{name of a function: how many of these items are its own}; several phases may be run as one."""
     if phase.function is not items_of_phases:
-        return {phase.function.__name__}
-    return {name.partition(":")[2] for together in items for name, _ in together}
+        return {phase.function.__name__: len(items)}
+    return Counter(name.partition(":")[2] for together in items for name, _ in together)
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):

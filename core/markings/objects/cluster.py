@@ -180,7 +180,7 @@ def _divided(paint, labels, striped, counts):
 
 def _stripe_markings(records, stripes, striped, shapes):
     """[_Marking] of stripes of crossings, with points of each and its Shape."""
-    painted = records.take(_all_rows(rows for _, rows in striped)).load_all()
+    painted = records.take(_all_rows(rows for _, rows in striped))
     markings, first = [], 0
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners

@@ -5,6 +5,7 @@ import gc
 import numpy as np
 import pytest
 import shapely
+from executed_stages import functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
@@ -99,7 +100,8 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
     asked, run, settings = {}, Threads.run, RoadMapSettings(survey=SurveySettings(section_length=1.0))
 
     def noting(self, phase, items, *others):
-        asked.setdefault(phase.function.__name__, []).append(len(items))
+        for name, count in functions_of(phase, items).items():
+            asked.setdefault(name, []).append(count)
         return run(self, phase, items, *others)
 
     _, road_map = made(street, tmp_path, kept, settings=settings)

@@ -31,7 +31,7 @@ class Noting(WorkerProcesses):
 
     def run(self, phase, items, *others):
         items = list(items)
-        names = functions_of(phase, items)
+        names = set(functions_of(phase, items))
         self.tasks.update({name: max(len(items), self.tasks.get(name, 0)) for name in names})
         killer = threading.Thread(target=self.kill_one, daemon=True)
         if killed := self.killed_in & names:
