@@ -12,7 +12,7 @@ from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
-from lanewright.core.markings.objects.cluster import combs_asked, pieces_asked
+from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters
 from lanewright.core.markings.objects.figures import figure_of_cells, figures_of
 from lanewright.core.markings.road_grid import CELL_SIZE
 
@@ -42,12 +42,16 @@ def asking_all():
     """A work that asks for all, and gives the answers."""
     clusters = [COMPOUND, *STRIPES, *DASHES]
     s, d = np.concatenate(clusters).T.copy()
-    spacing = np.zeros(len(s), np.uint16)
     bounds = np.cumsum([0, *map(len, clusters)])
+    members = [np.arange(*ends) for ends in zip(bounds, bounds[1:])]
+
+    def columns(rows):
+        return s[rows], d[rows], np.zeros(len(rows), np.uint16)
+
     spots = np.unique(np.concatenate(STRIPES + DASHES) // 400, axis=0) * 0.04
     windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
-    combs = yield combs_asked(spots, [rows for rows in windows if len(rows) > 3], 0.2)
-    pieces = yield pieces_asked((s, d, spacing), bounds, np.arange(len(clusters)) < 4, 0.4)
+    combs = yield asked(combs_of_windows, lambda rows: (spots[rows],), [rows for rows in windows if len(rows) > 3], 0.2)
+    pieces = yield asked(pieces_of_clusters, columns, members, 0.4, [number < 4 for number in range(len(members))])
     shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
     compared = Phase(figure_of_cells, NoSource(), (), str)
     figures = yield Asked(compared, [(cells, np.zeros(len(cells))) for cells in shown], 1.0)
@@ -102,7 +106,7 @@ def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
     def looking(count):
         spots = np.unique(STRIPES[0] // 400, axis=0) * 0.04
         for _ in range(count):
-            yield combs_asked(spots, [np.arange(len(spots))], 0.5)
+            yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))], 0.5)
         return count
 
     assert in_step([looking(2), looking(0), looking(1)], Noting(1)) == [2, 0, 1]
@@ -121,7 +125,7 @@ def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, mo
         return (yield Asked(Phase(curves_of_lanes, NoSource(), (), str), lines, 1.0, 2))
 
     def looking():
-        return (yield combs_asked(spots, [np.arange(len(spots))] * 3, 1.0))
+        return (yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))] * 3, 1.0))
 
     with closing(executor):
         fits, combs = in_step([fitting(), looking()], executor)
@@ -132,7 +136,7 @@ def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, mo
 
 def test_where_there_is_no_paint_there_is_nothing_to_do():
     def asking():
-        combs = yield combs_asked(np.empty((0, 2)), [], 0.5)
-        return combs + (yield pieces_asked(np.empty((3, 0), np.int32), np.zeros(1, int), np.zeros(0, bool), 1.0))
+        combs = yield asked(combs_of_windows, lambda rows: (rows,), [], 0.5)
+        return combs + (yield asked(pieces_of_clusters, lambda rows: (rows, rows, rows), [], 1.0, []))
 
     assert in_step([asking()], Threads(1)) == [[]] and in_step([], Threads(1)) == []
