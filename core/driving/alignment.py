@@ -66,13 +66,13 @@ def fitted_lanes(roads: Sequence[LanesOfRoad]) -> Work:
     """
     groups = [_parallel_groups(lanes) for lanes in roads]
     long = [axis for of_road in groups for _, axis in of_road if len(axis.at) >= ALIGNMENT.min_places_per_fit]
-    curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes")
+    curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes", listed=ALIGNMENT.fitted_together)
     places = [_known_places(track, lanes) for lanes in roads for track in lanes.tracks]
     asked = [*((*axis.thinned, "divided") for axis in long), *((*place, "whole") for place in places)]
-    known = yield Asked(curves, asked, 0.6, ALIGNMENT.fitted_together)
+    known = yield Asked(curves, asked, 0.6)
     parts, courses = {id(axis): cuts for axis, cuts in zip(long, known)}, iter(known[len(long):])
     elements_of = [(*axis.part(first, last), "element") for axis in long for first, last, _ in parts[id(axis)]]
-    fits = iter((yield Asked(curves, elements_of, 1.0, ALIGNMENT.fitted_together)))
+    fits = iter((yield Asked(curves, elements_of, 1.0)))
     divided = {key: [(first, last, next(fits).curve) for first, last, _ in cuts] for key, cuts in parts.items()}
     elements: list[list[list[Element]]] = [[[] for _ in lanes.tracks] for lanes in roads]
     for lanes, of_road, of_lane in zip(roads, groups, elements):

@@ -74,11 +74,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     roads = lanes_once([LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
-    heights_asked = [] if road_points is None else [road_heights(road_points, [(number, road.s, road.tracks)
-                                                                              for number, road in zip(estimates.roads, roads)])]
-    fitted, *heights_of_roads = in_step([fitted_lanes(roads), *heights_asked], THREADS if road_points is None else road_points.executor,
-                                        progress.part(0.5, 0.9))
-    measured: Sequence[Any] = heights_of_roads[0] if heights_of_roads else [[None] * len(road.tracks) for road in roads]
+    works = fitted_lanes(roads), road_heights(road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)])
+    fitted, measured = in_step(works, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.9))
     for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
         part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
         s = road.s

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -19,16 +18,14 @@ from .weights import EXECUTION
 class Asked:
     """What a work asks of a phase.
 
-    phase, items : as of `Executor.run`; works that ask for one function at once ask the same of it
+    phase, items : as of `Executor.run_together`; works that ask for one function at once ask the same of it
     until : fraction of the work that is done then
-    together : how many items at most the function is given as a list, as of `Executor.run_together`; 0 where it is given one
     read : gives the answers that the result of an item holds
     """
 
     phase: Phase
     items: Sequence[Any]
     until: float
-    together: int = 0
     read: Callable[[Any], list[Any]] = lambda result: [result]
 
 
@@ -54,18 +51,13 @@ def in_step(works: Sequence[Work], executor: Executor, progress: Progress = Prog
 
 def _answered(asked, executor, progress):
     """The answers to each of those who ask."""
-    parts = {one.phase.function: one for one in asked if len(one.items)}
-    places = [(one, k) for one in asked for k in range(len(one.items))]
-    if len(parts) > 1:
-        items = Items(len(places), lambda n: (name_of(places[n][0].phase.function), places[n][0].items[places[n][1]]))
-        together = min(one.together or EXECUTION.items_per_task for one in parts.values())
-        results = executor.run_together(_joined({name_of(function): one for function, one in parts.items()}), items, together, progress)
-    else:
-        items = Items(len(places), lambda n: places[n][0].items[places[n][1]])
-        results = iter(())
-        for one in parts.values():
-            phase = one.phase if one.together else replace(one.phase, together=EXECUTION.items_per_task)
-            results = executor.run_together(phase, items, one.together, progress)
+    phases, places = {one.phase.function: one.phase for one in asked if len(one.items)}, [(one, k) for one in asked for k in range(len(one.items))]
+
+    def item(n):
+        one, k = places[n]
+        return (name_of(one.phase.function), one.items[k]) if len(phases) > 1 else one.items[k]
+
+    results = iter(executor.run_together(_joined([*phases.values()]), Items(len(places), item), progress) if places else ())
     return [[answer for _ in range(len(one.items)) for answer in one.read(next(results))] for one in asked]
 
 
@@ -74,47 +66,44 @@ def _answered(asked, executor, progress):
 
 @dataclass(frozen=True)
 class _Phases:
-    """What several phases read from: each by the name of its function, and whether that is given lists."""
+    """What several phases read from: each by the name of its function."""
 
-    phases: Mapping[str, tuple[Phase, bool]]
+    phases: Mapping[str, Phase]
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open what they read from."""
         return Recipe("core.execution.in_step:_phases", dict(
-            {name: phase.source.recipe(folder) for name, (phase, _) in self.phases.items()},
-            shared={name: (phase.arguments, listed) for name, (phase, listed) in self.phases.items()}))
+            {name: phase.source.recipe(folder) for name, phase in self.phases.items()},
+            shared={name: (phase.arguments, phase.listed) for name, phase in self.phases.items()}))
 
 
-def _phases(shared: Mapping[str, tuple[tuple[Any, ...], bool]], **sources: Any) -> _Phases:
+def _phases(shared: Mapping[str, tuple[tuple[Any, ...], int]], **sources: Any) -> _Phases:
     """What `_Phases.recipe` describes."""
-    return _Phases({name: (Phase(named(name), sources[name], arguments), listed) for name, (arguments, listed) in shared.items()})
+    return _Phases({name: Phase(named(name), sources[name], arguments, listed=listed) for name, (arguments, listed) in shared.items()})
 
 
-def _joined(parts):
-    """The phase that does the items of all parts: {name of the function: Asked}."""
-    phases = {name: one.phase for name, one in parts.items()}
-    source = _Phases({name: (one.phase, bool(one.together)) for name, one in parts.items()})
+def _joined(phases):
+    """The phase that does the items of several."""
+    if len(phases) < 2:
+        return phases[0]
+    by_name = {name_of(phase.function): phase for phase in phases}
+    shared = {name: digest(phase.arguments) for name, phase in by_name.items()}
+    known = all(phase.state is not None or isinstance(phase.source, NoSource) for phase in phases)
 
-    @cache
-    def shared(name):
-        return digest(phases[name].arguments)
+    def asked(attribute, name, item):
+        """What a function of its phase, None for none, tells of an item."""
+        function = getattr(by_name[name], attribute)
+        return function and function([item] if by_name[name].listed else item)
 
-    def state(items):
-        return [(shared(name), (of := phases[name].state) and of([item] if parts[name].together else item)) for name, item in items]
-
-    def place(items):
-        name, item = items[0]
-        return phases[name].place([item] if parts[name].together else item)
-
-    known = all(phase.state is not None or isinstance(phase.source, NoSource) for phase in phases.values())
-    return Phase(items_of_phases, source, (), place, state=state if known else None)
+    return Phase(items_of_phases, _Phases(by_name), (), lambda items: asked("place", *items[0]),
+                 state=(lambda items: [(shared[name], asked("state", name, item)) for name, item in items]) if known else None,
+                 listed=min(phase.listed or EXECUTION.items_per_task for phase in phases))
 
 
 def items_of_phases(source: _Phases, items: Sequence[tuple[str, Any]]) -> list[Any]:
     """The phase: the results of items of several phases, those of one together where its function is given lists."""
     results: list[Any] = []
     for name, of_phase in groupby(items, itemgetter(0)):
-        phase, listed = source.phases[name]
-        alike = [item for _, item in of_phase]
-        results += phase.result(alike) if listed else map(phase.result, alike)
+        phase, alike = source.phases[name], [item for _, item in of_phase]
+        results += phase.result(alike) if phase.listed else map(phase.result, alike)
     return results

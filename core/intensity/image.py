@@ -302,8 +302,8 @@ def pieces_of_image(road_points: RoadPoints, settings: ImageSettings) -> Work:
     spans = [(road, *(end / IMAGE.ranking_window for end in road_points.store.span(road))) for road in road_points.roads()]
     windows = [(road, k) for road, start, end in spans for k in range(int(np.floor(start)), int(np.ceil(end)))]
     phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
-                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
-    return (yield Asked(phase, windows, 1.0, IMAGE.looked_windows, list))
+                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task], listed=IMAGE.looked_windows)
+    return (yield Asked(phase, windows, 1.0, list))
 
 
 def _grid_of(pieces: Sequence[_Piece], settings: ImageSettings) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:

@@ -118,10 +118,6 @@ class BlockReader:
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
-    def ground(self, drop: float) -> HeightFilter:
-        """What is near a road that lies `drop` metres below the trajectory."""
-        return HeightFilter(self.frame, drop, self.choice.above_road)
-
     def chosen(self, drop: float) -> ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))

@@ -337,8 +337,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     edge_sections = EdgeSections.of(edges)
     executor = THREADS if road_points is None else road_points.executor
     selected, courses, dropped = _traced(clustered_points, markings, frame, edge_sections, settings, executor, progress.part(0.0, LINES_SHARE / 2))
-    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
-    fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines",
+                  listed=STRANDS.fitted_together)
+    fitted = list(executor.run_together(phase, courses, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
     progress.info(f"Marking lines: {len(fitted)}; {dropped} fragments were left out.")

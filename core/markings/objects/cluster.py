@@ -17,6 +17,7 @@ from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
@@ -413,7 +414,7 @@ def asked(function: Callable[..., Any], columns: Callable[[np.ndarray], tuple[An
         a, b = cuts[k:k + 2]
         return *columns(together[bounds[a]:bounds[b]]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-    phase = Phase(function, NoSource(), arguments, lambda item: "the markings of all roads")
+    phase = Phase(function, NoSource(), arguments, lambda item: "the markings of all roads", together=EXECUTION.items_per_task)
     return Asked(phase, Items(len(cuts) - 1, item), until, read=read)
 
 

@@ -17,6 +17,7 @@ from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.in_step import Asked, Work
 from ...execution.phase import NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
 from ..weights import FIGURES
@@ -45,7 +46,7 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
-    phase = Phase(figure_of_cells, NoSource(), (), lambda item: "the figures of all roads")
+    phase = Phase(figure_of_cells, NoSource(), (), lambda item: "the figures of all roads", together=EXECUTION.items_per_task)
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         batch = groups[first:first + GROUPS_AT_ONCE]
         cells = [cells_of(members) for group in batch for members in group]

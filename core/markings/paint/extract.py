@@ -142,15 +142,16 @@ def scanner_scatter(road_points: RoadPoints) -> Work:
     sampled |= {key for key in windows if key[0] not in roads}
     length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
     phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
-                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item])
-    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0, WINDOWS_PER_TASK)
+                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item],
+                  listed=WINDOWS_PER_TASK)
+    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0)
     counts = {key: count for key, (count, _) in zip(windows, measured)}
     squares = [entry for _, entry in measured if entry is not None]
     shares = _shares(squares)
     missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
     missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
     if missed:
-        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0, WINDOWS_PER_TASK))]
+        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
     return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
 
 

@@ -266,8 +266,8 @@ def _mirror_phases(survey, road, rotations, samples, until):
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
     phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
-        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch))
-    for gathered in (yield Asked(phase, stretches, until, LATTICE.stretches_together)):
+        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch), listed=LATTICE.stretches_together)
+    for gathered in (yield Asked(phase, stretches, until)):
         for key, sums in gathered:
             bins[key].add(*sums)
     phases = {}
