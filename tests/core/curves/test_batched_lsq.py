@@ -55,8 +55,8 @@ def test_a_curve_is_the_same_to_the_last_digit_whoever_fits_it():
     ellipse = (np.stack([90.0 * np.cos(t), 40.0 * np.sin(t)]) for t in [np.linspace(0.0, 3.0, 900)])
     lines = [(*line, kind) for line in [*map(painted, LONG), *ellipse] for kind in ("whole", "element")]
     with closing(WorkerProcesses(find_interpreter(), 1)) as worker:
-        phase = Phase(curves_of_lanes, NoSource())
-        for fit, here in zip(worker.run_together(phase, lines, 1), curves_of_lanes(NoSource(), lines)):
+        phase = Phase(curves_of_lanes, NoSource(), listed=1)
+        for fit, here in zip(worker.run_together(phase, lines), curves_of_lanes(NoSource(), lines)):
             assert fit.curve.params() == here.curve.params() and fit.residuals.tobytes() == here.residuals.tobytes()
 
 

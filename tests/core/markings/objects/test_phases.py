@@ -122,7 +122,7 @@ def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, mo
     spots = np.unique(STRIPES[0] // 400, axis=0) * 0.04
 
     def fitting():
-        return (yield Asked(Phase(curves_of_lanes, NoSource(), (), str), lines, 1.0, 2))
+        return (yield Asked(Phase(curves_of_lanes, NoSource(), (), str, listed=2), lines, 1.0))
 
     def looking():
         return (yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))] * 3, 1.0))
