@@ -101,8 +101,8 @@ def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
     for end in (1090.0, 1140.0):
         estimate, = estimates_of_roads([road(end)], 3.5, EstimateWeights(), executor)
         assert np.isfinite(estimate.total)
-    # all stretches and the road; what is missing later is few, and made by threads of the caller
-    assert counts == [10, 1, 1]
+    # all stretches; what is missing later is few, and made by threads of the caller
+    assert counts == [10]
 
 
 def test_tables_hold_the_stations_at_which_a_line_is():
