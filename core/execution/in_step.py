@@ -64,22 +64,17 @@ def _answered(asked, executor, progress):
 # Several phases run as one: an item is the name of a function and an item of its own.
 
 
-@dataclass(frozen=True)
 class _Phases:
-    """What several phases read from: each by the name of its function."""
+    """What several phases read from: each by the name of its function; shared : {name: its arguments, and `listed`}."""
 
-    phases: Mapping[str, Phase]
+    def __init__(self, shared: Mapping[str, tuple[tuple[Any, ...], int]], **sources: Any):
+        self.shared = shared
+        self.phases = {name: Phase(named(name), sources[name], arguments, listed=listed) for name, (arguments, listed) in shared.items()}
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open what they read from."""
-        return Recipe("core.execution.in_step:_phases", dict(
-            {name: phase.source.recipe(folder) for name, phase in self.phases.items()},
-            shared={name: (phase.arguments, phase.listed) for name, phase in self.phases.items()}))
-
-
-def _phases(shared: Mapping[str, tuple[tuple[Any, ...], int]], **sources: Any) -> _Phases:
-    """What `_Phases.recipe` describes."""
-    return _Phases({name: Phase(named(name), sources[name], arguments, listed=listed) for name, (arguments, listed) in shared.items()})
+        return Recipe("core.execution.in_step:_Phases", dict({name: phase.source.recipe(folder) for name, phase in self.phases.items()},
+                                                            shared=self.shared))
 
 
 def _joined(phases):
@@ -95,7 +90,9 @@ def _joined(phases):
         function = getattr(by_name[name], attribute)
         return function and function([item] if by_name[name].listed else item)
 
-    return Phase(items_of_phases, _Phases(by_name), (), lambda items: asked("place", *items[0]),
+    source = _Phases({name: (phase.arguments, phase.listed) for name, phase in by_name.items()},
+                     **{name: phase.source for name, phase in by_name.items()})
+    return Phase(items_of_phases, source, (), lambda items: asked("place", *items[0]),
                  state=(lambda items: [(shared[name], asked("state", name, item)) for name, item in items]) if known else None,
                  listed=min(phase.listed or EXECUTION.items_per_task for phase in phases))
 

@@ -88,10 +88,10 @@ class Survey:
         write_plain(folder / SURVEY_FILE, dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED}))
         self.folder = folder
 
-    def put_in_order(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
-        """Put the points in order, in a folder that the executor's workers see, as they see that of the store."""
+    def put_in_order(self, folder: Path | None, executor: Executor = THREADS, progress: Progress = Progress(), moves: Any = None) -> None:
+        """Put the points in order, in a folder that the executor's workers see, as they see that of the store; `moves` : as of UnorderedPoints."""
         finishing = None if self.store.finish is None else self.finishing
-        UnorderedPoints(self.store, finishing, folder).put_in_order(executor, self.stretch, progress)
+        UnorderedPoints(self.store, finishing, folder, moves).put_in_order(executor, self.stretch, progress)
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""

@@ -27,7 +27,7 @@ from .las.samples import TimeSlots
 from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
-from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
+from .store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import READING
 
 
@@ -51,7 +51,7 @@ def read_cloud(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
     blocks = BlockReader(frame, choice, slots)
     drop, ranges = _rough_height(files, blocks, block)
     chosen, summary = blocks.chosen(drop), BlockSummary()
-    source = _PartsOfFiles(files, store, blocks, drop, ranges, block)
+    source = _PartsOfFiles(files, store, frame, choice, slots, drop, ranges, block)
     phase = Phase(_read_part, source, (), source.place, _join_parts)
     points = block if store.folder is None else READING.part_points   # threads read block by block
     for part in executor.run(phase, source.items(points), progress):
@@ -102,20 +102,18 @@ class _PartsOfFiles:
     ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
-    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, drop: float, ranges: np.ndarray, block: int):
-        self.files, self.store, self.reader = files, store, reader
-        self.ground = HeightFilter(reader.frame, drop, reader.choice.above_road)
-        self.drop, self.ranges, self.block = drop, ranges, block
-        self.clouds = ParallelCloudReader(reader.choice.layers)
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, frame: RoadFrame, choice: PointChoice, slots: TimeSlots, drop: float,
+                 ranges: np.ndarray, block: int):
+        self.files, self.store, self.drop, self.ranges, self.block = files, store, drop, ranges, block
+        self.reader, self.ground = BlockReader(frame, choice, slots), HeightFilter(frame, drop, choice.above_road)
+        self.clouds = ParallelCloudReader(choice.layers)
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes read the same."""
-        store = self.store
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("core.survey.survey_reader:_parts_of_files", dict(
-            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
-            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
-            ranges=self.ranges, block=self.block))
+        return Recipe("core.survey.survey_reader:_PartsOfFiles", dict(
+            files=files, store=SectionStore(self.store.dtype, self.store.section_length, self.store.folder).recipe(folder), frame=self.reader.frame,
+            choice=self.reader.choice, slots=self.reader.slots, drop=self.drop, ranges=self.ranges, block=self.block))
 
     def items(self, points: int) -> list[tuple[int, int]]:
         """(first, last + 1) numbers of blocks that have about so many points together."""
@@ -130,14 +128,6 @@ class _PartsOfFiles:
         last, begin, count = self.ranges[item[1] - 1].tolist()
         last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
         return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
-
-
-def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, frame: RoadFrame, choice: PointChoice, slots: TimeSlots,
-                    drop: float, **others: Any) -> _PartsOfFiles:
-    """What `_PartsOfFiles.recipe` describes."""
-    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
-    reader = BlockReader(frame, choice, slots)
-    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
@@ -174,14 +164,15 @@ class UnorderedPoints:
     moves : `moved` gives Columns of moved points, and `reach` by how many m of station at most; None where points stay
     """
 
-    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path | None, moves: Any = None):
-        self.store, self.finishing, self.folder, self.moves = store, finishing, folder, moves
+    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path | str | None, moves: Any = None):
+        self.store, self.finishing, self.folder, self.moves = store, finishing, None if folder is None else Path(folder), moves
+        store.finish = finishing
         self.beyond = 0 if moves is None else int(np.ceil(moves.reach / store.section_length))   # sections into which points may move
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        return Recipe("core.survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
-                                                               finishing=self.finishing, folder=str(self.folder), moves=self.moves))
+        return Recipe("core.survey.survey_reader:UnorderedPoints", dict(store=self.store.recipe(folder), finishing=self.finishing,
+                                                                        folder=str(self.folder), moves=self.moves))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
         """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
@@ -200,13 +191,6 @@ class UnorderedPoints:
             records = self.store.section(road, section)
             store.append(road, self.moves.moved(records[slice(*np.searchsorted(records["s"], ends).tolist())]))
         return store
-
-
-def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str, moves: Any) -> UnorderedPoints:
-    """What `UnorderedPoints.recipe` describes."""
-    store = opened_store(points_folder, **contents)
-    store.finish = finishing
-    return UnorderedPoints(store, finishing, Path(folder), moves)
 
 
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:

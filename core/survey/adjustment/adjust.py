@@ -23,7 +23,6 @@ from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
-from ..survey_reader import UnorderedPoints
 from ..weights import ADJUST, FRAME, REGISTER
 from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
@@ -176,9 +175,9 @@ class _Moves:
 
 def replace_points(survey: Any, moves: Any, progress: Progress = Progress()) -> None:
     """Move the points of a Survey within its store; `moves` : as of `_Moves`."""
-    store = survey.store
-    before = list(store.folder.iterdir()) if store.folder else []
-    UnorderedPoints(store, None, store.folder, _Moves(survey.frame, moves)).put_in_order(survey.executor, survey.stretch, progress)
+    folder = survey.store.folder
+    before = list(folder.iterdir()) if folder else []
+    survey.put_in_order(folder, survey.executor, progress, _Moves(survey.frame, moves))
     for file in before:
         file.unlink()
 
