@@ -92,7 +92,7 @@ class PointChoice:
 
 
 @dataclass
-class ChosenPoints:
+class _ChosenPoints:
     """What the points that are kept say of the survey: the HeightHistogram and the Coverage of those on the vehicle's own track, and samples.
 
     sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
@@ -118,9 +118,9 @@ class BlockReader:
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
-    def chosen(self, drop: float) -> ChosenPoints:
+    def chosen(self, drop: float) -> _ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
+        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
     def drops(self, block: Any) -> tuple[list[np.ndarray], int]:
         """Units of 0.1 mm from the trajectory down to the points of a block on its track, and how many lie in the corridor, at any height."""
@@ -130,7 +130,7 @@ class BlockReader:
             drops += [part.copy() for _, _, part in self.tracks.drops(road, points, inside)] if road >= 0 else []
         return drops, count
 
-    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: _ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
@@ -159,7 +159,7 @@ class BlockReader:
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken; chosen : ChosenPoints, which
+        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken; chosen : _ChosenPoints, which
         counts those of other heights. Yields road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond
         the corridor the number is that of `beside_road`, and stations are the vehicle's.
         """

@@ -32,7 +32,7 @@ from .weights import READING
 
 
 @dataclass(frozen=True)
-class ReadCloud:
+class _ReadCloud:
     """The points of all files, and statistics of the whole survey."""
 
     store: SectionStore
@@ -45,7 +45,7 @@ class ReadCloud:
 
 
 def read_cloud(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
-               progress: Progress) -> ReadCloud:
+               progress: Progress) -> _ReadCloud:
     """Read all files into a store, `block` points at a time, as a phase."""
     slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
     blocks = BlockReader(frame, choice, slots)
@@ -60,7 +60,7 @@ def read_cloud(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
         chosen.coverage.join(part.coverage)
         chosen.sampled.append((part.times, part.places))
         store.adopt(part.index, store.folder)
-    return ReadCloud(store, summary, chosen.histogram.heights(), *chosen.coverage.warnings(), slots, chosen.sampled)
+    return _ReadCloud(store, summary, chosen.histogram.heights(), *chosen.coverage.warnings(), slots, chosen.sampled)
 
 
 def _rough_height(files, blocks, size):

@@ -61,13 +61,13 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
             for at_tail in (True, False)]
     open_ends = [(end, curb, at_tail) for curb, at_tail, end in ends if end is not None and _leaves(end, survey.frame.roads)
                  and not met.within(*end.ahead(np.ones(1)), 0.5).any()]
-    phase = Phase(course_beyond, decimation, (), lambda end: "the curbs of side streets")
+    phase = Phase(_course_beyond, decimation, (), lambda end: "the curbs of side streets")
     courses = yield Asked(phase, [end for end, *_ in open_ends], 1.0)
     line = survey.frame.road(road)
     return [*curbs, *_distinct([_led(course, *of_end, survey, road, line) for course, of_end in zip(courses, open_ends) if course is not None], met)]
 
 
-def course_beyond(decimation: PointDecimation, end: CurbEnd) -> _CurbCourse | None:
+def _course_beyond(decimation: PointDecimation, end: CurbEnd) -> _CurbCourse | None:
     """The phase that follows a curb beyond the corridor from its end: its course, None where it is not seen."""
     return led_beyond(*_ground(decimation, end), end)
 
