@@ -16,7 +16,7 @@ from .frame.road_frame import RoadFrame
 from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
-from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
 from .store.section_store import PartitionedPoints, SectionStore
 from .trajectory.time_systems import SECONDS_PER_WEEK
 from .weights import FRAME, READING
@@ -126,27 +126,24 @@ class BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
-    def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
-        """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
-        return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
+    def rough_drop(self, blocks: Iterable[Any]) -> float:
+        """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
+        samples: list[np.ndarray] = []
+        looked_at = 0
+        for block in blocks:
+            for road, points, near in self._near_roads(block, BlockSummary()):
+                looked_at += len(points) if near is None else int(np.count_nonzero(near))
+                samples += [drops[::7] for _, _, drops in self.tracks.drops(road, points, near)] if road >= 0 else []
+            if sum(map(len, samples)) > READING.height_samples or looked_at > READING.max_waiting_points:
+                break
+        drops = np.concatenate([np.empty(0, np.int32), *samples])
+        return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
     def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
             yield self._partition(road, points, near, chosen, store)
-
-    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
-                 store: SectionStore) -> Iterator[PartitionedPoints]:
-        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
-        for road, points in parts:
-            if road < 0:
-                near = ground.level(road_of(road), points["s"], points["z"])
-            else:
-                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
-                self._count_far(road, points, ~near, chosen)
-            if near.any():
-                yield self._partition(road, points, near, chosen, store)
 
     def _partition(self, road, points, mask, chosen, store):
         if road < 0:
@@ -375,11 +372,6 @@ def _between(values, least, most):
     """(N,) bool: which int32 values lie between two limits, both included."""
     above = np.subtract(values, np.int32(least))
     return above.view(np.uint32) <= np.uint32(most - least)
-
-
-def estimate_sensor_height(drops: np.ndarray) -> float | None:
-    """A rough sensor height in metres, accurate to one or two decimetres, of (N,) units of 0.1 mm; None for too few points."""
-    return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else None
 
 
 class HeightHistogram:

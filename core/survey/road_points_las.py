@@ -87,9 +87,11 @@ EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", Non
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
 SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
-COPIED_FIELDS = {"time": "gps_time", "intensity": "intensity", "source": "point_source_id", "pass_number": "pass"}   # nosec B105
-SCALED_FIELDS = (("s", "station_m", COORDINATE_SCALE), ("d", "offset_m", COORDINATE_SCALE), ("half_width", "half_width", MILLIMETRE),
-                 ("spacing", "spacing", MILLIMETRE))
+# a column of the records, its field in the file, and m of a whole number of it; None for what is no length
+FIELDS = (("time", "gps_time", None), ("intensity", "intensity", None), ("source", "point_source_id", None), ("pass_number", "pass", None),
+          ("scanner", "scanner", None), ("s", "station_m", COORDINATE_SCALE), ("d", "offset_m", COORDINATE_SCALE), ("covered", "covered", None),
+          ("half_width", "half_width", MILLIMETRE), ("corrected", "intensity_corrected", None), ("cluster", "cluster", None),
+          ("spacing", "spacing", MILLIMETRE))
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
@@ -145,21 +147,12 @@ def _record(road_points, road, number, header):
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
     for name, moved, metres in zip("xyz", off, metres_of_file(header, road_points.crs)):
         out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / metres)
-    out["gps_time"] = records["time"]
-    out["intensity"] = records["intensity"]
-    out["point_source_id"] = records["source"]
     out["return_number"], out["number_of_returns"] = records["returns"] & 15, records["returns"] >> 4
     out["classification"] = np.full(len(records), ROAD_CLASS, np.uint8)
-    out.array["road"], out.array["pass"] = road, records["pass_number"]
-    out.array["scanner"] = records["scanner"]
-    out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
-    out.array["half_width"], out.array["covered"] = records["half_width"], records["covered"]
-    if road_points.has_corrected:
-        out.array["intensity_corrected"] = records["corrected"]
-    if road_points.has_cluster:
-        out.array["cluster"] = records["cluster"]
-    if road_points.has_spacing:
-        out.array["spacing"] = records["spacing"]
+    out.array["road"] = road
+    for name, field, _ in FIELDS:
+        if field in out.array.dtype.names:
+            out.array[field] = records[name]
     return out
 
 
@@ -199,13 +192,9 @@ def _read_records(block, names, scales, dtype):
     # another program may have rewritten the file with its own scale
     for name, scale in zip("xyz", scales):
         records[name] = _whole(np.asarray(block[name.upper()]), scale / COORDINATE_SCALE)
-    for name, source in COPIED_FIELDS.items():
-        records[name] = block[source]
+    records["corrected"] = np.nan
+    for name, field, unit in FIELDS:
+        if field in names:
+            records[name] = block[field] if unit is None else np.rint(np.asarray(block[field], float) / unit)
     records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
-    for name, source, unit in SCALED_FIELDS:
-        if source in names:
-            records[name] = np.rint(np.asarray(block[source], float) / unit)
-    records["corrected"] = block["intensity_corrected"] if "intensity_corrected" in names else np.nan
-    for name in ("scanner", "cluster", "covered"):
-        records[name] = block[name] if name in names else 0
     return records

@@ -1,12 +1,11 @@
 """Reading point cloud files into the section store, part by part, by whoever runs phases.
 
-The height of the road is estimated from the first blocks, which are always read here.
+The height of the road is estimated from the first blocks, which are looked at here.
 """
 
 from __future__ import annotations
 
 import os
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +16,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
-from .blocks import BlockReader, BlockSummary, ChosenPoints, HeightFilter, PointChoice, estimate_sensor_height
+from .blocks import BlockReader, BlockSummary, PointChoice
 from .coverage import CountedCells
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
@@ -45,81 +44,25 @@ class SurveyReader:
         self.frame, self.store, self.choice = frame, store, choice
         self.summary = BlockSummary()
         self.slots = TimeSlots(1)
-        self._blocks: BlockReader
-        # both are created once the rough height of the road is known; until then parts of blocks wait
-        self._ground: HeightFilter | None = None
-        self._chosen: ChosenPoints
-        self._drop = READING.default_sensor_height
-        self._waiting: list[tuple[int, Columns]] = []
-        self._samples: list[np.ndarray] = []
-
-    @property
-    def sampled(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """See above."""
-        return self._chosen.sampled
+        self.sampled: list[tuple[np.ndarray, np.ndarray]] = []
 
     def read(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
-        """Read all files, `block` points at a time: what follows the first blocks as a phase."""
-        total, done = self._begin(files), 0
+        """Read all files as a phase, `block` points at a time, after a look at the first of them."""
+        self.slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
+        blocks = BlockReader(self.frame, self.choice, self.slots)
         with ParallelCloudReader(self.choice.layers) as readers:
-            ranges = deque(readers.ranges(files, block))
-            while ranges and self._ground is None:
-                number, first, count = ranges.popleft()
-                for points in readers.points(files[number], first, count, block):
-                    self._read_block(points)
-                    done += len(points)
-                    progress.report(done / total)
-        self._settle()
-        source = _PartsOfFiles(files, self.store, self._blocks, self._drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+            ranges = list(readers.ranges(files, block))
+            drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
+        chosen, source = blocks.chosen(drop), _PartsOfFiles(files, self.store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
         phase = Phase(_read_part, source, (), source.place, _join_parts)
         points = block if self.store.folder is None else READING.part_points   # threads read block by block
-        for part in executor.run(phase, source.items(points), progress.part(done / total, 1.0)):
-            self._take_part(part)
-        self._end()
-
-    def _begin(self, files):
-        """Prepare for the points of files; how many there are."""
-        total = sum(file.count for file in files)
-        self.slots = TimeSlots.for_points(total, READING.max_split_samples)
-        self._blocks = BlockReader(self.frame, self.choice, self.slots)
-        return total
-
-    def _end(self):
-        self._settle()
-        self.heights, (self.moved, self.holes) = self._chosen.histogram.heights(), self._chosen.coverage.warnings()
-
-    def _read_block(self, block):
-        """Read one of the first blocks, by which the rough height of the road is estimated: its points wait until that is known."""
-        summary = BlockSummary()
-        if self._ground is not None:
-            for part in self._blocks.read(block, summary, self._ground, self._chosen, self.store):
-                self.store.add(part)
-        else:
-            parts = self._blocks.unfiltered(block, summary)
-            self._waiting += parts
-            self._samples += [drops[::7] for road, points in parts if road >= 0 for _, _, drops in self._blocks.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > READING.height_samples or sum(len(points) for _, points in self._waiting) > READING.max_waiting_points:
-                self._settle()
-        self.summary.join(summary)
-
-    def _take_part(self, part):
-        """Take a part that somebody else read, in the order of the files."""
-        self.summary.join(part.summary)
-        self._chosen.histogram.join(part.drops)
-        self._chosen.coverage.join(part.coverage)
-        self._chosen.sampled.append((part.times, part.places))
-        self.store.adopt(part.index, self.store.folder)
-
-    def _settle(self):
-        """Estimate the rough height of the road and store the points that waited for it."""
-        if self._ground is not None:
-            return
-        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
-        self._drop = READING.default_sensor_height if drop is None else drop
-        self._ground, self._chosen = self._blocks.ground(self._drop), self._blocks.chosen(self._drop)
-        waiting, self._waiting, self._samples = self._waiting, [], []
-        for points in self._blocks.filtered(waiting, self._ground, self._chosen, self.store):
-            self.store.add(points)
+        for part in executor.run(phase, source.items(points), progress):
+            self.summary.join(part.summary)
+            chosen.histogram.join(part.drops)
+            chosen.coverage.join(part.coverage)
+            self.sampled.append((part.times, part.places))
+            self.store.adopt(part.index, self.store.folder)
+        self.heights, (self.moved, self.holes) = chosen.histogram.heights(), chosen.coverage.warnings()
 
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.

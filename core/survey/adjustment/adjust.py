@@ -150,8 +150,7 @@ def _moved_track(frame, moves, p):
     if p.number not in moves.by_pass:
         return p
     change = _changes(frame.road(p.road), p.s, p.d, moves.metres(p.number, p.s))
-    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
-                   _by_station=None, _progress=None, _span=None, _by_tick={})
+    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)})
 
 
 def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]], progress: Progress = Progress(),
@@ -174,9 +173,8 @@ def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]
         return store.partition(key[0], records.with_columns(**moved)) if len(records) else None
 
     try:
-        for points in ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress):
-            if points is not None:
-                store.add(points)
+        for points in filter(None, ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress)):
+            store.add(points)
     except BaseException:
         store.close()
         raise

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from math import hypot
 
 import numpy as np
@@ -199,14 +200,10 @@ class Pass:
     s: np.ndarray   # s, d: (N,) station and offset of the vehicle on the road, m
     d: np.ndarray
     attitude: np.ndarray | None = field(default=None, repr=False)
-    _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)
-    _progress: np.ndarray | None = field(default=None, repr=False)
-    _span: tuple[float, float] | None = field(default=None, repr=False)
-    _by_tick: dict = field(default_factory=dict, repr=False)
 
     def __getstate__(self) -> dict:
         """What was driven, without the tables that speed up its use."""
-        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self) if attribute.init and not attribute.name.startswith("_")}
+        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}
 
     def __setstate__(self, state: dict) -> None:
         Pass.__init__(self, **state)
@@ -217,20 +214,16 @@ class Pass:
         It is constant before the first and after the last sample, and interpolated linearly in tables with a step of 5 ms, so that many times in any
         order are fast.
         """
-        if not self._by_tick:
-            span = self.time[-1] - self.time[0]
-            tick = max(FRAME.time_tick, span / FRAME.max_ticks)
-            self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
-        tick, times = self._by_tick["time"]
+        tick, times, tables = self._by_tick
         ticks = (np.asarray(time, float) - times[0]) * (1.0 / tick)
         np.clip(ticks, 0.0, len(times) - 1.5, out=ticks)
         k = ticks.astype(np.intp)
         ticks -= k
         columns = []
         for name in names:
-            if name not in self._by_tick:
-                self._by_tick[name] = np.interp(times, self.time, getattr(self, name))
-            table = self._by_tick[name]
+            if name not in tables:
+                tables[name] = np.interp(times, self.time, getattr(self, name))
+            table = tables[name]
             values = table.take(k, mode="clip")
             step = table[1:].take(k, mode="clip")
             step -= values
@@ -238,6 +231,13 @@ class Pass:
             values += step
             columns.append(values)
         return columns
+
+    @cached_property
+    def _by_tick(self):
+        """s from tick to tick, their times, and {name: what `at` gives at these}, as far as it was asked for."""
+        span = self.time[-1] - self.time[0]
+        tick = max(FRAME.time_tick, span / FRAME.max_ticks)
+        return tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2), {}
 
     def position(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
         """Local x, y, z of the vehicle, (N,) m each, at (N,) times."""
@@ -248,29 +248,28 @@ class Pass:
 
     def progress_at(self, time: np.ndarray) -> np.ndarray:
         """Metres of road driven since the pass began, at (N,) times; never decreases, also where the vehicle reverses."""
-        if self._progress is None:
-            self._progress = np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
         return np.interp(time, self.time, self._progress)
+
+    @cached_property
+    def _progress(self):
+        return np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
 
     def at_station(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Offset and local height of the track, (N,) m each, at (N,) stations."""
-        stations, d, z = self._track_by_station()
+        stations, d, z = self._by_station
         return np.interp(s, stations, d), np.interp(s, stations, z)
 
     def height_at_station(self, s: np.ndarray) -> np.ndarray:
         """Local height of the track, (N,) m, at (N,) stations."""
-        stations, _, z = self._track_by_station()
+        stations, _, z = self._by_station
         return np.interp(s, stations, z)
 
-    def _track_by_station(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        if self._by_station is None:
-            order = np.argsort(self.s, kind="stable")
-            self._by_station = self.s[order], self.d[order], self.z[order]
-        return self._by_station
+    @cached_property
+    def _by_station(self):
+        order = np.argsort(self.s, kind="stable")
+        return self.s[order], self.d[order], self.z[order]
 
-    @property
+    @cached_property
     def span(self) -> tuple[float, float]:
         """(first, last) station of the pass, m."""
-        if self._span is None:
-            self._span = float(self.s.min()), float(self.s.max())
-        return self._span
+        return float(self.s.min()), float(self.s.max())

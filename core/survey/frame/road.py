@@ -6,6 +6,8 @@ are interpolated between nodes. The station of a point is where the normal of th
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
@@ -36,7 +38,6 @@ class Road:
         self._curvature = np.gradient(self._heading, NODE_SPACING)
         self.end = start + NODE_SPACING * (len(nodes_x) - 1)
         self.length = self.end - FRAME.frame_extension
-        self._tree: cKDTree | None = None
 
     def __getstate__(self) -> dict:
         return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
@@ -126,10 +127,12 @@ class Road:
 
     def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = FRAME.corridor) -> np.ndarray:
         """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
-        if self._tree is None:
-            self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])
         distance, index = self._tree.query(np.c_[x, y], distance_upper_bound=corridor * 1.05 + 1.0)
         return np.where(np.isfinite(distance), self.start + 5 * NODE_SPACING * index, np.nan)
+
+    @cached_property
+    def _tree(self):
+        return cKDTree(np.c_[self.x[::5], self.y[::5]])
 
 
 # The reference line of a road: the smoothed track of its longest pass, continued by other passes.

@@ -144,40 +144,24 @@ def _sample_windows(survey, road):
     return samples
 
 
-def _runs_about(survey, road, number, middle, pieces=range(LATTICE.rotation_sample_pieces)):
-    """Yield (piece, (pass number, scanner), first returns) of a pass in some pieces of the road about a station: all at once would be too many."""
-    bounds = np.linspace(middle - LATTICE.rotation_sample_length / 2, middle + LATTICE.rotation_sample_length / 2, LATTICE.rotation_sample_pieces + 1)
-    for piece in pieces:
-        for key, records in scanner_runs(survey.window(road, bounds[piece], bounds[piece + 1]).records):
-            if key[0] == number:
-                yield piece, key, records
-
-
 def _windows_at(survey: Any, place: tuple[int, float], road: int) -> dict[tuple[int, int], _RotationWindow]:
     """The phase that looks at half a second of a pass, by its number, about a station: {(pass number, scanner): its points} of those that measured
     enough then."""
     number, middle = place
-    times: dict = {}
-    for piece, key, records in _runs_about(survey, road, number, middle):
-        times.setdefault(key, {})[piece] = records["time"]
-    rows = {}
-    for key, parts in times.items():
-        near = _near_in_time(list(parts.values()))
-        if sum(map(len, near)) >= LATTICE.min_window_points:
-            rows[key] = dict(zip(parts, near))
-    chosen: dict = {key: [] for key in rows}
-    pieces = sorted({piece for parts in rows.values() for piece, near in parts.items() if len(near)})
-    for piece, key, records in _runs_about(survey, road, number, middle, pieces):
-        if key in rows:
-            near = take_rows(records, rows[key][piece])
-            chosen[key].append([near[name] for name in ("time", "d", "z")])
+    columns: dict = {}
+    bounds = np.linspace(middle - LATTICE.rotation_sample_length / 2, middle + LATTICE.rotation_sample_length / 2, LATTICE.rotation_sample_pieces + 1)
+    for start, end in zip(bounds[:-1], bounds[1:]):   # all at once would be too many
+        for key, records in scanner_runs(survey.window(road, start, end).records):
+            if key[0] == number:
+                columns.setdefault(key, []).append([np.array(records[name]) for name in ("time", "d", "z")])
     windows = {}
-    for key, parts in chosen.items():
-        time, d, z = (np.concatenate(column) for column in zip(*parts))
-        order = time_order(time)
-        ordered = dict(time=time[order], d=d[order], z=z[order])
-        time, phasor = _phasors(survey, number, ordered)
-        windows[key] = _RotationWindow(time, phasor, ordered["d"] * COORDINATE_SCALE)
+    for key, parts in columns.items():
+        near = _near_in_time([time for time, *_ in parts])
+        if sum(map(len, near)) >= LATTICE.min_window_points:
+            time, d, z = (np.concatenate([values[rows] for values, rows in zip(column, near)]) for column in zip(*parts))
+            order = time_order(time)
+            time, phasor = _phasors(survey, number, dict(time=time[order], d=d[order], z=z[order]))
+            windows[key] = _RotationWindow(time, phasor, d[order] * COORDINATE_SCALE)
     return windows
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.text_table import read_number_table
+from ...io.text_table import finite_or_nan, read_number_table
 from ...lazy import pyproj
 from ..weights import TRAJECTORY
 from .columns import ROLES, candidates_by_role, listed
@@ -124,7 +124,8 @@ def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str
     values = {role: columns[k].in_metres if role in "xyz" else columns[k].values for role, k in column_of.items() if role in ROLES[1:]}
     values.update({role: _angle(columns, column_of[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in column_of})
     if not {"lon", "x"} & set(values) and set(FROM_CENTRE) <= set(column_of):
-        values.update(_from_the_centre(*(columns[column_of[role]].values for role in FROM_CENTRE)))
+        transformer = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True)
+        values.update(zip(("lon", "lat", "z"), map(finite_or_nan, transformer.transform(*(columns[column_of[role]].values for role in FROM_CENTRE)))))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
     if "time" in column_of:
         values["time"] = _time(columns, meaning, label, notes, doubts)
@@ -158,11 +159,6 @@ def _degrees(column):
         # np.degrees gives the last bit that a product would not
         return np.degrees(values) if unit.factor == 1.0 else values * np.degrees(unit.factor)
     return values * unit.factor if unit.name == "degrees" else values
-
-
-def _from_the_centre(x, y, z):
-    lon, lat, height = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True).transform(x, y, z)
-    return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
 
 
 def _time(columns, meaning, label, notes, doubts):

@@ -30,6 +30,12 @@ class TableColumn:
     written: Callable[[], Sequence[str]] = list   # gives the (N,) texts as they stand in the table
     first: str = ""   # the first of them
 
+    @classmethod
+    def of(cls, title: str, texts: Sequence[str], unit: Unit = Unit(), values: np.ndarray | None = None) -> TableColumn:
+        """Of (N,) texts; their values are by default the numbers that they hold."""
+        return cls(title, np.array([as_number(text) for text in texts]) if values is None else values, unit, lambda: texts,
+                   next(filter(None, texts), ""))
+
     @property
     def is_text(self) -> bool:
         """Whether it holds no number at all."""
@@ -88,9 +94,8 @@ def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> 
     columns = []
     for k, title in enumerate(titles):
         cells = [row[k] for row in rows]
-        texts = ["" if value is None else str(value) for value in cells]
         numbers = finite_or_nan(np.array([as_number(value) for value in cells], float))
-        columns.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
+        columns.append(TableColumn.of(title, ["" if value is None else str(value) for value in cells], unit_of_name(title), numbers))
     return columns
 
 
@@ -289,8 +294,7 @@ def _place_columns(text, number):
         number[axis] = np.where(bad, np.nan, number[axis])
     if "geoid" in number and np.isfinite(number["geoid"]).any():
         number["z"] = number["z"] + number["geoid"]
-    return [TableColumn(title, number[what], Unit("degrees" if what in ("lat", "lon", "roll", "pitch", "heading") else "metres"),
-                        lambda what=what: text[what], text[what][0])
+    return [TableColumn.of(title, text[what], Unit("metres" if what == "z" else "degrees"), number[what])
             for what, title in (("lat", "latitude"), ("lon", "longitude"), ("z", "ellipsoidal height" if "geoid" in number else "height"),
                                 ("roll", "roll"), ("pitch", "pitch"), ("heading", "heading")) if what in number]
 
@@ -299,7 +303,7 @@ def _clock_column(days, clocks):
     """The time of sentences with hhmmss.ss of UTC; those before the first date are of the same day, or of no known one."""
     first = next((day for day in days if day), "")
     times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else "" for day, clock in zip(days, clocks)]
-    return TableColumn("UTC", np.full(len(times), np.nan), Unit(), lambda: times, next((time for time in times if time), ""))
+    return TableColumn.of("UTC", times, values=np.full(len(times), np.nan))
 
 
 def _gps_column(rows, number):
@@ -331,14 +335,9 @@ def _read_track(path: Path) -> list[TableColumn]:
     rows = reader.rows[kind]
     if kind == "coord":
         rows = [[*row[:3], time] for row, time in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
-    columns = [_column_of_track(rows, k, title, unit)
-               for k, (title, unit) in enumerate((("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")))]
+    columns = [TableColumn.of(title, texts, Unit(unit)) for (title, unit), texts in zip(
+        (("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")), zip(*rows))]
     return columns if columns[3].first else columns[:3]
-
-
-def _column_of_track(rows, k, title, unit):
-    texts = [row[k] for row in rows]
-    return TableColumn(title, np.array([as_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
 
 
 class _TrackReader:

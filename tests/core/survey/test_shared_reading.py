@@ -15,8 +15,8 @@ from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.survey import blocks, survey_reader
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey import survey_reader
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store import section_store
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
@@ -26,8 +26,9 @@ SETTINGS = SurveySettings(block=700)   # points
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    # few samples of the height: only the first blocks are read by the caller
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000, height_samples=20))
+    # few samples of the height: only the first blocks are looked at by the caller
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, height_samples=20))
+    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000))
     monkeypatch.setattr(section_store, "STRETCH_POINTS", 2000)
 
 
@@ -69,7 +70,7 @@ def known(survey):
 @pytest.fixture(scope="module")
 def by_threads(street):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(survey_reader, "READING", replace(survey_reader.READING, height_samples=20))
+        patch.setattr(blocks, "READING", replace(blocks.READING, height_samples=20))
         return opened(street)
 
 
