@@ -13,12 +13,12 @@ from ..common.parallel import ScratchBuffers
 from .coverage import Coverage
 from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
-from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
+from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, packed_returns, valid_points
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
 from .store.section_store import PartitionedPoints, SectionStore
-from .trajectory.time_systems import SECONDS_PER_WEEK
+from .trajectory.time_systems import unwrap_week
 from .weights import FRAME, READING
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
@@ -46,6 +46,12 @@ class BlockSummary:
         self.darkest, self.brightest = min(self.darkest, int(intensity.min())), max(self.brightest, int(intensity.max()))
 
 
+def _cells(start, end, bits):
+    """Number of the first cell of so many bits of a station in units of 0.1 mm, and (C,) m at the middles of those from start to end (m)."""
+    first, last = (int(station / COORDINATE_SCALE) >> bits for station in (start, end))
+    return first, ((np.arange(first, last + 1) << bits) + (1 << bits) // 2) * COORDINATE_SCALE
+
+
 class HeightFilter:
     """Selects points near the rough height of the road, `drop` metres below the trajectory, up to `above` metres above it."""
 
@@ -53,8 +59,7 @@ class HeightFilter:
         self._roads = {}
         self._depth = np.uint32((above + READING.kept_below_road + 2 * READING.height_margin) / COORDINATE_SCALE)
         for road in frame.roads:
-            first, last = (int(station / COORDINATE_SCALE) >> READING.height_cell_bits for station in (road.start, road.end))
-            stations = ((np.arange(first, last + 1) << READING.height_cell_bits) + (1 << READING.height_cell_bits) // 2) * COORDINATE_SCALE
+            first, stations = _cells(road.start, road.end, READING.height_cell_bits)
             lowest = frame.track_height(road.number, stations) - drop - READING.kept_below_road - READING.height_margin
             self._roads[road.number] = first, to_units(lowest)
 
@@ -93,14 +98,11 @@ class PointChoice:
 
 @dataclass
 class ChosenPoints:
-    """What the points that are kept say of the survey: the HeightHistogram and the Coverage of those on the vehicle's own track, and samples.
+    """What the points that are kept say of the survey."""
 
-    sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
-    """
-
-    histogram: HeightHistogram
+    histogram: HeightHistogram   # histogram, coverage: of those on the vehicle's own track
     coverage: Coverage
-    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
 class BlockReader:
@@ -263,28 +265,18 @@ class BlockReader:
         if "scanner_channel" in names and flagged(piece):
             columns["scanner"] = np.asarray(piece["scanner_channel"])
         # LAS 1.4 stores both numbers in this way
-        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
+        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else packed_returns(piece)
         return columns
 
     def _placed(self, columns, usable):
         """Fill the columns s and d; (N,) uint16 pass numbers, (N,) bool inside the frame (None for all), and the number of points without a pass."""
-        names = ("x", "y", "time", "s", "d")
-        if usable is None:
-            passes, inside = self._located(*map(columns.get, names))
-            return passes.view(np.uint16), inside, self._lost(passes)
-        rows = np.flatnonzero(usable)
-        columns_of_rows = [columns[name].take(rows) for name in names]
-        located, within = self._located(*columns_of_rows)
-        passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
-        passes[rows], inside[rows] = located, True if within is None else within
-        for name, values in zip(names[3:], columns_of_rows[3:]):
-            columns[name][rows] = values
-        return passes.view(np.uint16), inside, self._lost(located)
-
-    def _lost(self, passes):
-        if not self.choice.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
-            return 0
-        return int(np.count_nonzero(passes < 0))
+        passes, inside = self._located(*map(columns.get, ("x", "y", "time", "s", "d")))
+        lost = 0
+        if self.choice.has_time and (passes.strides[0] != 0 or passes[0] < 0):
+            lost = int(np.count_nonzero(passes < 0 if usable is None else (passes < 0) & usable))
+        if usable is not None:
+            passes = np.where(usable, passes, np.int16(-1))
+        return passes.view(np.uint16), _both(inside, usable), lost
 
     def _located(self, x, y, time, s, d):
         """Pass numbers and `inside`, as by `RoadProjection.project_units`, with or without times."""
@@ -297,16 +289,6 @@ class BlockReader:
         for p in self.frame.passes[::-1]:
             passes[road == p.road] = p.number
         return passes, road >= 0
-
-
-def unwrap_week(time: np.ndarray) -> np.ndarray:
-    """Seconds of the week, continued beyond the end of the week where it ends during the scan; (N,)."""
-    return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
-
-
-def _returns(block):
-    """(N,) return number + 16 * number of returns."""
-    return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
 
 
 def _both(one, other):
@@ -330,8 +312,7 @@ class VehicleTracks:
         # pass number -> first station cell, offsets and heights of the track at the middle of each cell
         self._tracks: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}
         for p in frame.passes:
-            first, last = (int(station / COORDINATE_SCALE) >> READING.track_cell_bits for station in p.span)
-            middles = ((np.arange(first, last + 1) << READING.track_cell_bits) + (1 << READING.track_cell_bits) // 2) * COORDINATE_SCALE
+            first, middles = _cells(*p.span, READING.track_cell_bits)
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from ..common.arrays import mask_runs
 from .frame.road_frame import RoadFrame
 from .store.records import COORDINATE_SCALE, to_units
 from .weights import READING
@@ -78,7 +79,10 @@ class Coverage:
             # two surveys along one trajectory have more between them than a file that is missing
             if hole.sum() < len(where):
                 holes += [(road.number, *_stations(start, end)) for start, end in _runs(hole, first, READING.least_hole)]
-        return _said_of_heights(moved, metres) if moved else "", _said_of_holes(holes) if holes else ""
+        return (f"The trajectory does not keep to one height above the road: along {_named(moved)} the road lies {np.median(metres):+.2g} m from its "
+                "usual height. Heights may be in feet in one file, or of two kinds: export all from one solution." if moved else "",
+                f"No point was kept under the vehicle along {_named(holes)} of the drive, though there are some before and behind. Give all files: "
+                "one may be missing." if holes else "")
 
     def _levels(self, counts):
         """m down from the trajectory, less `about`, to where most points of cells lie, of (C, bins + 2) counts; NaN for too few points."""
@@ -95,8 +99,7 @@ class Coverage:
 
 def _runs(chosen: np.ndarray, first: int, least: float) -> Iterator[tuple[int, int]]:
     """(first, last + 1) of the runs of (C,) chosen cells that are longer than so many metres; `first` is the number of the first cell."""
-    ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(np.int8)))
-    return ((first + a, first + b) for a, b in ends.reshape(-1, 2).tolist() if np.subtract(*_stations(b, a)) > least)
+    return ((first + a, first + b) for a, b in mask_runs(chosen) if np.subtract(*_stations(b, a)) > least)
 
 
 def _stations(*cells):
@@ -108,14 +111,3 @@ def _named(stretches):
     longest = sorted(stretches, key=lambda stretch: stretch[1] - stretch[2])[:READING.told_stretches]
     places = "; ".join(f"road {road}, station {start:.0f} to {end:.0f} m" for road, start, end in longest)
     return f"{sum(end - start for _, start, end in stretches):.0f} m ({places}{'; …' if len(stretches) > len(longest) else ''})"
-
-
-def _said_of_heights(stretches, metres):
-    up = float(np.median(metres))
-    return (f"The trajectory does not keep to one height above the road: along {_named(stretches)} the road lies {up:+.2g} m from its usual height. "
-            "Heights may be in feet in one file, or of two kinds: export all from one solution.")
-
-
-def _said_of_holes(stretches):
-    return (f"No point was kept under the vehicle along {_named(stretches)} of the drive, though there are some before and behind. Give all files: "
-            "one may be missing.")

@@ -21,7 +21,7 @@ from ..lazy import pyproj
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
-from .blocks import PointChoice, unwrap_week
+from .blocks import PointChoice
 from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
@@ -33,9 +33,9 @@ from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
-from .survey_reader import SurveyReader
+from .survey_reader import read_points
 from .trajectory.meaning import EARTH_RADIUS
-from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, wrapped_week
+from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, VEHICLE
 
@@ -172,21 +172,21 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from)
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
-                         None if shared is None else shared.points)
-    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
+    executor, folder = (THREADS, None) if shared is None else (shared.reading, shared.points)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame), folder)
+    choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
-    _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
-    _say_left_out(files, frame, reader, settings, progress)
-    height = float(np.mean(list(reader.heights.values())))
-    feet = _check_height(height, crs, (fitted.seen, reader.moved), progress)
-    survey = _survey_of(files, frame, reader, settings, crs, progress)
+    parts_at = read_at if shared is None else READING.parts_progress * read_at
+    read = read_points(files, frame, store, choice, settings.block, executor, progress.part(0.0, parts_at))
+    _say_left_out(files, frame, read, settings, progress)
+    height = float(np.mean(list(read.heights.values())))
+    feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
+    survey = _survey_of(files, frame, read, settings, crs, progress)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
-    parts_at = read_at if shared is None else READING.parts_progress * read_at
-    _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
+    _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
     _put_in_order(survey, shared, progress.part(parts_at, read_at))
     mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
     _see_passes(survey, settings.fit_passes, store, shared, progress)
@@ -206,19 +206,11 @@ def _intensity_source(samples, settings, one_scale, progress):
     return intensity, rounding
 
 
-def _read_points(reader, files, block, shared, progress):
-    if shared is None:
-        reader.read(files, block, THREADS, progress)
-    else:
-        shared.points.mkdir(exist_ok=True)
-        reader.read(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
-
-
-def _survey_of(files, frame, reader, settings, crs, progress):
+def _survey_of(files, frame, read, settings, crs, progress):
     """The Survey of points as they were read."""
-    total, store = sum(file.count for file in files), reader.store
-    scanner_field, scanners = reader.summary.census.choose(settings.scanner_field)
-    return Survey(files, frame, store, crs, reader.heights, scanner_field, scanners, reader.summary.brightest > reader.summary.darkest,
+    total, store = sum(file.count for file in files), read.store
+    scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
+    return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
 
 
@@ -280,18 +272,18 @@ def _frame_of(files, trajectory, crs, has_time, time_note, progress):
     return frame
 
 
-def _say_left_out(files, frame, reader, settings, progress):
+def _say_left_out(files, frame, read, settings, progress):
     """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
-    total, left = sum(file.count for file in files), reader.summary
-    if not reader.store.count:
-        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    total, left = sum(file.count for file in files), read.summary
+    if not read.store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, read, settings.corridor))
     if left.excluded:
         tell = progress.warn if left.excluded > READING.much_excluded * total else progress.info
         tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. Give the whole trajectory.")
-    for doubt in filter(None, (reader.moved, reader.holes)):
+    for doubt in filter(None, (read.moved, read.holes)):
         progress.warn(doubt)
 
 
@@ -331,9 +323,9 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     return max((length for length in lengths if length * density <= READING.section_points), default=STORE.section_length)
 
 
-def _sampled(survey, reader, progress):
+def _sampled(survey, read, progress):
     """Times and places of the points sampled, each once, and a word on those that files have in common."""
-    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
+    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *read.sampled))
     if len(survey.files) == 1 or not may_overlap(survey.files):
         return time, place
     rows = distinct_rows(time, place)
@@ -343,7 +335,7 @@ def _sampled(survey, reader, progress):
     return time[rows], place[rows]
 
 
-def _tell_scanners_apart(survey, reader, progress):
+def _tell_scanners_apart(survey, read, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
@@ -351,12 +343,12 @@ def _tell_scanners_apart(survey, reader, progress):
 
     if not survey.has_time:
         return
-    time, place = _sampled(survey, reader, progress)
+    time, place = _sampled(survey, read, progress)
     if len(survey.files) > 1:
         check_measured_once(time, place * COORDINATE_SCALE)
     if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
         return
-    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), read.slots.stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
         survey.scanners = list(range(survey.splitter.poses.scanners))
@@ -483,11 +475,11 @@ def _angles_exchanged(x, y, crs):
     return to_degrees.transform(lat, lon, direction="INVERSE")
 
 
-def _no_overlap(files, frame, reader, corridor):
-    if reader.summary.excluded == sum(file.count for file in files):
+def _no_overlap(files, frame, read, corridor):
+    if read.summary.excluded == sum(file.count for file in files):
         return "All points are withheld or classified as noise (LAS classes 7 and 18). Give the cloud as it was before its classification."
-    if reader.summary.without_time:
-        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside its time, "
+    if read.summary.without_time:
+        return (f"No point was measured while the trajectory was driven: {read.summary.without_time} points lie outside its time, "
                 f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
     return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
             "use one CRS.")

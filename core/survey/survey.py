@@ -72,7 +72,7 @@ class Survey:
     splitter: ScannerSplitter | None = None   # distinguishes scanners that no field distinguishes; None where there is no need
 
     def __post_init__(self) -> None:
-        self.store.finish = self._finished
+        self.store.finish = lambda road, records: self.finishing(road, records)
 
     def recipe(self, folder: Path) -> Recipe:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
@@ -114,9 +114,6 @@ class Survey:
     def finishing(self) -> Finishing:
         """What the points of a section are finished with before they are put in order."""
         return Finishing(self.frame, self.sensor_height, self.scanner_field, self.scanners, self.splitter, self.above_road)
-
-    def _finished(self, road, records):
-        return self.finishing(road, records)
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """(N,) local z of the road under the track at (N,) stations, accurate to decimetres."""

@@ -27,42 +27,43 @@ from .las.samples import TimeSlots
 from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, road_of
-from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
+from .store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import READING
 
 
-class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey, complete after `read`.
+@dataclass(frozen=True)
+class PointsRead:
+    """Points in a section store, and what they say of the whole survey."""
 
-    summary : BlockSummary of all points
-    heights, moved, holes : {pass number: metres from the trajectory down to the road}, and as of `Coverage.warnings`
-    slots, sampled : TimeSlots of the points by which scanners are distinguished that no field distinguishes; their (N,) times and (N, 3) units
-        of 0.1 mm, in no order; without times none
-    """
+    store: SectionStore
+    summary: BlockSummary   # of all points
+    slots: TimeSlots   # of the points by which scanners are distinguished that no field distinguishes
+    sampled: list[tuple[np.ndarray, np.ndarray]]   # their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    moved: str   # moved, holes: as of `Coverage.warnings`
+    holes: str
 
-    def __init__(self, frame: RoadFrame, store: SectionStore, choice: PointChoice):
-        self.frame, self.store, self.choice = frame, store, choice
-        self.summary = BlockSummary()
-        self.slots = TimeSlots(1)
-        self.sampled: list[tuple[np.ndarray, np.ndarray]] = []
 
-    def read(self, files: list[CloudHeader], block: int, executor: Executor, progress: Progress) -> None:
-        """Read all files as a phase, `block` points at a time, after a look at the first of them."""
-        self.slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
-        blocks = BlockReader(self.frame, self.choice, self.slots)
-        with ParallelCloudReader(self.choice.layers) as readers:
-            ranges = list(readers.ranges(files, block))
-            drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
-        chosen, source = blocks.chosen(drop), _PartsOfFiles(files, self.store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
-        phase = Phase(_read_part, source, (), source.place, _join_parts)
-        points = block if self.store.folder is None else READING.part_points   # threads read block by block
-        for part in executor.run(phase, source.items(points), progress):
-            self.summary.join(part.summary)
-            chosen.histogram.join(part.drops)
-            chosen.coverage.join(part.coverage)
-            self.sampled.append((part.times, part.places))
-            self.store.adopt(part.index, self.store.folder)
-        self.heights, (self.moved, self.holes) = chosen.histogram.heights(), chosen.coverage.warnings()
+def read_points(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
+                progress: Progress) -> PointsRead:
+    """Read all files into a store as a phase, `block` points at a time, after a look at the first of them."""
+    slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
+    blocks, summary, sampled = BlockReader(frame, choice, slots), BlockSummary(), []
+    with ParallelCloudReader(choice.layers) as readers:
+        ranges = list(readers.ranges(files, block))
+        drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
+    chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+    phase = Phase(_read_part, source, (), source.place, _join_parts)
+    points = block if store.folder is None else READING.part_points   # threads read block by block
+    if store.folder is not None:
+        store.folder.mkdir(exist_ok=True)
+    for part in executor.run(phase, source.items(points), progress):
+        summary.join(part.summary)
+        chosen.histogram.join(part.drops)
+        chosen.coverage.join(part.coverage)
+        sampled.append((part.times, part.places))
+        store.adopt(part.index, store.folder)
+    return PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings())
 
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
@@ -155,13 +156,14 @@ def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
 class UnorderedPoints:
     """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are."""
 
-    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: Path):
-        self.store, self.finishing, self.folder = store, finishing, folder
+    def __init__(self, store: SectionStore, finishing: Finishing | None, folder: str | Path):
+        self.store, self.finishing, self.folder = store, finishing, Path(folder)
+        store.finish = finishing
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        return Recipe("core.survey.survey_reader:_unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
-                                                               finishing=self.finishing, folder=str(self.folder)))
+        store = Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.store.folder), **self.store.contents()))
+        return Recipe("core.survey.survey_reader:UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder)))
 
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
         """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
@@ -169,13 +171,6 @@ class UnorderedPoints:
         phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length))
         parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
         self.store.take_over(StoreIndex.join(parts), self.folder)
-
-
-def _unordered_points(contents: dict[str, Any], points_folder: str, finishing: Finishing | None, folder: str) -> UnorderedPoints:
-    """What `UnorderedPoints.recipe` describes."""
-    store = opened_store(points_folder, **contents)
-    store.finish = finishing
-    return UnorderedPoints(store, finishing, Path(folder))
 
 
 def _order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
@@ -217,7 +212,9 @@ class Finishing:
         # only records near the limits are compared with the height at their own station
         z = records["z"]
         below, above = (READING.kept_below_road, self.above_road) if road >= 0 else (READING.level_height, READING.level_height)
-        first, nodes = self._heights(road_of(road), records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
+        # heights of the road at fixed stations, of which `first` is the number of the first
+        first, last = (int(np.floor(end * COORDINATE_SCALE / READING.road_height_step)) for end in (records["s"].min(), records["s"].max()))
+        nodes = self.frame.track_height(road_of(road), np.arange(first, last + 2) * READING.road_height_step, self.sensor_height)
         doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
                                   | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
         node = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
@@ -226,9 +223,3 @@ class Finishing:
         near = np.ones(len(records), bool)
         near[doubtful] = (h > -below) & (h < above)
         return None if near[doubtful].all() else near
-
-    def _heights(self, road, start, end):
-        """Heights of the road at fixed stations from start to end: number of the first, heights."""
-        first = int(np.floor(start / READING.road_height_step))
-        stations = np.arange(first, int(np.floor(end / READING.road_height_step)) + 2) * READING.road_height_step
-        return first, self.frame.track_height(road, stations, self.sensor_height)

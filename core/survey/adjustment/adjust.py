@@ -72,8 +72,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
     stations = np.arange(first, last + REGISTER.correction_step / 2, REGISTER.correction_step)
     count = len(stations)
-    rows = np.arange(count - 1)
-    step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
+    step = sparse.diags([-1.0, 1.0], [0, 1], (count - 1, count))
     prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
     corrections = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):

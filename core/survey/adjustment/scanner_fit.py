@@ -29,15 +29,12 @@ MOVE_WORDS = ("ahead", "behind"), ("left", "right"), ("above", "below")
 
 @dataclass(frozen=True)
 class _ScannerOffsets:
-    """Moves of a scanner onto the first one, on the right and the left of the vehicle.
-
-    sigma : (2, 3) m, of the moves: how far they differ between windows of road, of which all show the same mounting; infinite of one window
-    """
+    """Moves of a scanner onto the first one, on the right and the left of the vehicle."""
 
     scanner: int   # its number
     beside: np.ndarray   # (2, 3) m left of the track at which each move was measured, negative on the right
     moves: np.ndarray   # (2, 3) m ahead, left and up that bring its points onto those of the first scanner; NaN where nothing shows it
-    sigma: np.ndarray
+    sigma: np.ndarray   # (2, 3) m, of the moves: how far they differ between windows, of which all show one mounting; infinite of one window
     far: bool   # whether they lie farther apart than could be measured
 
 

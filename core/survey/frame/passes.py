@@ -21,16 +21,12 @@ MAX_ROAD_LENGTH = 200_000.0  # derived: m: stations have 32 bits of 0.1 mm; a lo
 
 @dataclass(frozen=True)
 class _DrivenPath:
-    """A stretch of the trajectory.
-
-    line_first, line_last : rows without the halves of turns on the spot at the ends, where the vehicle turns but the
-        road does not; `line_last` exclusive
-    """
+    """A stretch of the trajectory."""
 
     first: int   # first, last: trajectory rows, `last` exclusive
     last: int
     length: float   # metres driven
-    line_first: int
+    line_first: int   # line_first, line_last: rows without the halves of turns on the spot, where the road does not turn; `line_last` exclusive
     line_last: int
 
 
@@ -149,12 +145,6 @@ def _turn_ends(heading, along, apex):
     return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
 
 
-def _apex(px, py, heading, a, b):
-    """Index of the farthest position between two with opposite headings, in a U-turn or a reversal."""
-    out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
-    return a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
-
-
 def _return_cuts(px, py, along, heading):
     """[(index, whether it is a turn on the spot)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(FRAME.same_carriageway, output_type="ndarray")
@@ -176,7 +166,9 @@ def _return_cuts(px, py, along, heading):
         # round, so that neither part has two stations at the crossing, also where it crosses on another level
         is_turn = bool(is_back and path < FRAME.min_loop_length + 20)
         if is_turn:
-            start = _apex(px, py, heading, a, b)
+            # the farthest position between two with opposite headings
+            out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
+            start = a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
         else:
             start = b if joins else int(np.searchsorted(along, (along[a] + along[b]) / 2))
         cuts.append((start, is_turn))
@@ -185,10 +177,7 @@ def _return_cuts(px, py, along, heading):
 
 @dataclass
 class Pass:
-    """One run of the vehicle along a road.
-
-    attitude : (3, N) roll, pitch and heading in radians, 0 where unknown; None without attitude
-    """
+    """One run of the vehicle along a road."""
 
     number: int   # of the pass, in order of time
     road: int   # number of its road
@@ -199,7 +188,7 @@ class Pass:
     z: np.ndarray
     s: np.ndarray   # s, d: (N,) station and offset of the vehicle on the road, m
     d: np.ndarray
-    attitude: np.ndarray | None = field(default=None, repr=False)
+    attitude: np.ndarray | None = field(default=None, repr=False)   # (3, N) roll, pitch and heading in radians, 0 where unknown; None without
 
     def __getstate__(self) -> dict:
         """What was driven, without the tables that speed up its use."""

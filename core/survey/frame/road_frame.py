@@ -24,11 +24,7 @@ MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest co
 
 @dataclass
 class RoadFrame:
-    """All roads and passes of a survey.
-
-    pass_sigma : {road number: SigmaAlong}, one sigma across of the middle of its passes, by what they differ or
-        by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
-    """
+    """All roads and passes of a survey."""
 
     origin: np.ndarray   # (3,) map coordinates of the local origin, m
     roads: list[Road]   # list of Road, by number
@@ -36,6 +32,8 @@ class RoadFrame:
     crs: str = ""   # WKT, "" where unknown
     has_time: bool = True   # whether points are assigned to passes by their time
     notes: Sequence[str] = ()   # remarks on the trajectory, for the log
+    # {road number: one sigma across of the middle of its passes}, by what they differ or by the accuracy of the trajectory where it was told,
+    # whichever is more; without entry where both are unknown
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
     way_known: bool = True   # whether the direction of its passes is that of the drive, which an estimated trajectory may not know
 

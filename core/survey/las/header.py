@@ -7,7 +7,7 @@ import os
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import product, takewhile
 from typing import BinaryIO
 
 import numpy as np
@@ -64,13 +64,12 @@ class HeaderFields:
 
     def records(self, file: BinaryIO, size: int) -> Iterator[_Record]:
         """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
-        position = self.header_size
-        for _ in range(self.vlrs):
-            record = _Record.read(file, position, VLR_HEADER_SIZE, size)
-            if record is None:
-                return
-            yield record
-            position += VLR_HEADER_SIZE + len(record.data)
+        return _records(file, self.header_size, self.vlrs, VLR_HEADER_SIZE, size)
+
+    def extended(self, file: BinaryIO, size: int) -> list[_Record]:
+        """The extended records behind the points that lie in the file."""
+        records = _records(file, self.first_evlr, self.evlrs if self.first_evlr >= self.header_size else 0, EVLR_HEADER_SIZE, size)
+        return list(takewhile(lambda record: record.at + EVLR_HEADER_SIZE + record.length <= size, records))
 
     def end_of_points(self, size: int) -> int:
         """The byte before which the points end at the latest, in a file of so many bytes."""
@@ -149,6 +148,16 @@ class _Record:
         head = self.head[:2] + _decodable(self.head[2:18]) + self.head[18:]
         data = _decodable(self.data) if self.user == CRS_USER and self.number in CRS_TEXTS else self.data
         return self if (head, data) == (self.head, self.data) else replace(self, head=head, data=data)
+
+
+def _records(file, position, count, head_size, size):
+    """Yield variable length records that follow each other from a byte of a file of so many bytes on."""
+    for _ in range(count):
+        record = _Record.read(file, position, head_size, size)
+        if record is None:
+            return
+        yield record
+        position += head_size + record.length
 
 
 def _base_size(point_format: int) -> int | None:
@@ -279,7 +288,7 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
             return _MendedHeader()
         patches: list[tuple[int, bytes]] = []
         notes: list[str] = []
-        records, extended = list(stated.records(file, size)), list(_extended(file, stated, size))
+        records, extended = list(stated.records(file, size)), stated.extended(file, size)
         if len(extended) < stated.evlrs:
             patches.append((EVLR_COUNT_AT, struct.pack("<I", len(extended))))
             notes.append(f"{stated.evlrs - len(extended):,} of its {stated.evlrs:,} extended records lie beyond its end and are left out")
@@ -295,17 +304,6 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
         patches += [(before.at, record.head + record.data) for before in extended if (record := before.mended()) is not before]
         mended = _MendedHeader(tuple(patches), tuple(notes))
         return mended if fields.compressed else mended.with_count(fields, _points_in_las(file, fields, size))
-
-
-def _extended(file, fields, size):
-    """The extended records behind the points that lie in the file."""
-    position = fields.first_evlr
-    for _ in range(fields.evlrs):
-        record = _Record.read(file, position, EVLR_HEADER_SIZE, size) if position >= fields.header_size else None
-        if record is None or position + EVLR_HEADER_SIZE + record.length > size:
-            return
-        yield record
-        position += EVLR_HEADER_SIZE + record.length
 
 
 def _lengths(fields, records, size):

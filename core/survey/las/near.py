@@ -60,14 +60,11 @@ def _opened(states):
 
 @dataclass(frozen=True)
 class _Stored:
-    """Points as a file stores them, in less memory than their coordinates take.
+    """Points as a file stores them, in less memory than their coordinates take."""
 
-    raw : 3 of (N,) int32; intensity : (N,) uint16; scale, offset : (3,) m
-    """
-
-    raw: list[np.ndarray]
-    intensity: np.ndarray
-    scale: np.ndarray
+    raw: list[np.ndarray]   # 3 of (N,) int32
+    intensity: np.ndarray   # (N,) uint16
+    scale: np.ndarray   # scale, offset: (3,) m
     offset: np.ndarray
 
     @classmethod
@@ -112,15 +109,12 @@ class _LastRead:
 
 @dataclass
 class _RangesOfFile:
-    """The ranges of points of a file, and of those that were read the cells of `LAS.place_cell` m in which points lie.
-
-    ranges : (first, count); cells : {number of a range: (K,) int64}
-    """
+    """The ranges of points of a file, and of those that were read the cells of `LAS.place_cell` m in which points lie."""
 
     header: CloudHeader
     last: _LastRead
-    ranges: list[tuple[int, int]] = field(default_factory=list)
-    cells: dict[int, np.ndarray] = field(default_factory=dict)
+    ranges: list[tuple[int, int]] = field(default_factory=list)   # (first, count)
+    cells: dict[int, np.ndarray] = field(default_factory=dict)   # {number of a range: (K,) int64}
 
     def within(self, number, reader, place, radius):
         """(N, 4) x, y, z, m, and intensity of those points of a range that lie in a square; none where no point of the range lies near it."""

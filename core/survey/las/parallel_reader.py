@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from ...common.parallel import ScratchBuffers
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
@@ -20,8 +22,7 @@ class ParallelCloudReader:
     def __init__(self, layers: Sequence[str] | None = None):
         self._layers = layers
         self._readers: dict[int, tuple[str, Any]] = {}  # thread -> path, laspy.LasReader
-        self._layouts: dict[str, Any] = {}   # path -> header and chunks of the files read last
-        self._buffers, self._lock = threading.local(), threading.Lock()
+        self._layout, self._buffers = lru_cache(LAS.most_layouts)(self._read_layout), ScratchBuffers()
 
     def __enter__(self) -> ParallelCloudReader:
         return self
@@ -68,22 +69,14 @@ class ParallelCloudReader:
         run = [(count, nbytes) for count, nbytes in run.tolist() if count]
         return self._read_chunks(file.path, header, record, start + int(length[:k].sum()), first, run)
 
-    def _layout(self, file):
+    def _read_layout(self, file):
         """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
-        layout = self._layouts.get(file.path)
-        if layout is None:
-            with open_cloud(file.path, self._layers, known=file) as reader:
-                header = reader.header
-            chunks = None
-            if header.are_points_compressed:
-                record, start, table = chunks_of(file.path)
-                chunks = record, start, np.array(table, np.int64).reshape(-1, 2)
-            layout = header, chunks
-            with self._lock:
-                while len(self._layouts) >= LAS.most_layouts:
-                    self._layouts.pop(next(iter(self._layouts)))
-                self._layouts[file.path] = layout
-        return layout
+        with open_cloud(file.path, self._layers, known=file) as reader:
+            header = reader.header
+        if not header.are_points_compressed:
+            return header, None
+        record, start, table = chunks_of(file.path)
+        return header, (record, start, np.array(table, np.int64).reshape(-1, 2))
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
@@ -127,7 +120,7 @@ class ParallelCloudReader:
 
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
-        buffer = self._buffer(header, sum(count for count, _ in table))
+        buffer = self._buffers.of(sum(count for count, _ in table) * header.point_format.size)("points", np.uint8)
         with damage_from(path, header.point_count, first):
             with open(path, "rb") as file:
                 file.seek(place)
@@ -137,7 +130,7 @@ class ParallelCloudReader:
 
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
-        buffer = self._buffer(header, count)
+        buffer = self._buffers.of(count * header.point_format.size)("points", np.uint8)
         left = memoryview(buffer)
         with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
             file.seek(header.offset_to_point_data + first * header.point_format.size)
@@ -146,13 +139,6 @@ class ParallelCloudReader:
         if len(left):
             raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
         return _point_record(buffer, header)
-
-    def _buffer(self, header, count):
-        """Bytes for points; this thread's previous buffer where it is large enough, which avoids page faults."""
-        size, buffer = count * header.point_format.size, getattr(self._buffers, "bytes", None)
-        if buffer is None or len(buffer) < size:
-            buffer = self._buffers.bytes = np.empty(size, np.uint8)
-        return buffer[:size]
 
     def _reader(self, file):
         path, thread = file.path, threading.get_ident()

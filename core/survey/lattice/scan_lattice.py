@@ -53,9 +53,7 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
     if not survey.has_time:
         lattice.notes.append("Without gps_time in the cloud and time in the trajectory scan lines cannot be distinguished; "
                              "scanlines are made of the points near each section plane.")
-        progress.warn(lattice.notes[0])
-        return lattice
-    roads = survey.store.roads()
+    roads = survey.store.roads() if survey.has_time else []
     for i, road in enumerate(roads):
         samples = _sample_windows(survey, road)
         rotations = {}
@@ -77,15 +75,14 @@ def _report_lattice(lattice, progress):
     if phases:
         rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in phases.values()}, key=float)
         progress.info(f"Scan lattice found for {len(phases)} run(s) of a scanner: {', '.join(rates)} lines per second.")
-    if not phases and not missing:
-        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
-                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
-        progress.warn(lattice.notes[-1])
     if missing:
         reasons = ", ".join(sorted(set(missing.values())))
-        note = (f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
-                "there scanlines are made of the points near each section plane.")
-        lattice.notes.append(note)
+        lattice.notes.append(f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
+                             "there scanlines are made of the points near each section plane.")
+    elif not phases and not lattice.notes:
+        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
+                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
+    for note in lattice.notes:
         progress.warn(note)
 
 

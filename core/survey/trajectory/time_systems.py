@@ -240,6 +240,11 @@ def unwrap_time(time: np.ndarray) -> np.ndarray:
     return time
 
 
+def unwrap_week(time: np.ndarray) -> np.ndarray:
+    """Seconds of the week, continued beyond the end of the week where it ends during the scan; (N,)."""
+    return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
+
+
 def wrapped_week(span: tuple[float, float]) -> bool:
     """Whether a cloud's (first, last) gps_time in seconds shows that a GPS week ended during the drive."""
     return 0 <= span[0] and span[1] <= SECONDS_PER_WEEK * 1.001 and span[1] - span[0] > 0.75 * SECONDS_PER_WEEK
