@@ -16,8 +16,7 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..execution.phase import Executor, Phase, Recipe
-from .blocks import BlockReader, BlockSummary, PointChoice
-from .coverage import CountedCells
+from .blocks import BlockReader, BlockSummary, CountedCells, HeightFilter, PointChoice
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
@@ -89,7 +88,8 @@ class _PartsOfFiles:
     """
 
     def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, drop: float, ranges: np.ndarray, block: int):
-        self.files, self.store, self.reader, self.ground = files, store, reader, reader.ground(drop)
+        self.files, self.store, self.reader = files, store, reader
+        self.ground = HeightFilter(reader.frame, drop, reader.choice.above_road)
         self.drop, self.ranges, self.block = drop, ranges, block
         self.clouds = ParallelCloudReader(reader.choice.layers)
 

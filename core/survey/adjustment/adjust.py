@@ -349,26 +349,24 @@ class Beside(NamedTuple):
     stations: np.ndarray   # stations, places: (N,) m on the first, middles of windows of `correction_step`, and on the second
     places: np.ndarray
     apart: np.ndarray   # (N,) m of offset, left positive, from the first to the second
-    up: np.ndarray   # (N,) m by which the points of the second lie higher, NaN where both hardly see the same
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
-        up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
-        measured = pair._replace(up=np.array(list(up)))
-        message, warns = _message_of_carriageways(measured)
+        up = np.array(list(ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))))
+        message, warns = _message_of_carriageways(pair, up)
         (progress.warn if warns else progress.info)(message)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
-    """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
+    """Pairs of roads that run beside each other for `shortest_beside` and more on one level."""
     pairs = []
     for road, other_road, s, places, offset, rise in _parallel(frame):
         rows = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
         if len(rows) * REGISTER.correction_step >= ADJUST.shortest_beside:
             way = np.sign(np.cos(frame.road(road).heading(s[rows]) - frame.road(other_road).heading(places[rows])))
-            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows], np.full(len(rows), np.nan)))
+            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows]))
     return pairs
 
 
@@ -435,17 +433,20 @@ def _flat_cells(along, across, z):
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
-    """What is said of two roads beside each other, and whether it is a warning."""
-    measured = np.isfinite(pair.up)
-    far = measured & (np.abs(pair.up) > ADJUST.max_height_apart)
+def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
+    """What is said of two roads beside each other, and whether it is a warning.
+
+    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
+    """
+    measured = np.isfinite(up)
+    far = measured & (np.abs(up) > ADJUST.max_height_apart)
     intro = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{intro}. Their drives differ in height at "
-                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist())), 'by up to {:.1f} cm')}. "
+                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(up[far]).tolist())), 'by up to {:.1f} cm')}. "
                 "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False
-    return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "
+    return (f"{intro}: in height they agree within {100 * np.abs(up[measured]).max():.1f} cm; "
             "how far they lie apart across is not known.", False)

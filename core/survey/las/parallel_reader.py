@@ -42,8 +42,7 @@ class ParallelCloudReader:
             if _in_one_piece(file, size):
                 yield number, 0, file.count
             elif self._layout(file)[0].are_points_compressed:
-                for _, _, first, run in _chunk_runs(file, size, self._layout(file)[1]):
-                    yield number, first, sum(count for count, _ in run)
+                yield from ((number, *run) for run in self._chunk_runs(file, size))
             else:
                 yield from ((number, first, min(size, file.count - first)) for first in range(0, file.count, size))
 
@@ -85,10 +84,8 @@ class ParallelCloudReader:
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
             samples = (self._read_points(file, start, LAS.points_per_sample) for start in np.unique(starts).tolist())
         else:
-            header, chunks = self._layout(file)
-            runs = list(_chunk_runs(file, 1, chunks))
-            numbers = np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int))
-            samples = (self._read_chunks(file.path, header, *runs[k]) for k in numbers)
+            runs = list(self._chunk_runs(file, 1))
+            samples = (self._load(file, *runs[k]) for k in np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int)))
         for points in samples:
             yield np.array(points["gps_time"], float)
 
@@ -109,11 +106,23 @@ class ParallelCloudReader:
             for first in range(start, file.count, count):
                 yield self._read_points(file, first, count)
             return
-        first = start
+        for run in self._chunk_runs(file, 1):
+            if run[0] >= start:
+                yield self._load(file, *run)
+
+    def _chunk_runs(self, file, size):
+        """Yield (index of the first point, points) of runs of as many chunks as `size` points hold, at least one."""
+        first = before = 0
+        # for the last chunk the table may state the capacity
         for end in np.minimum(np.cumsum(self._layout(file)[1][2][:, 0]), file.count).tolist():
-            if end > first:
-                yield self._load(file, first, end - first)
-                first = end
+            if before > first and end - first > size:
+                yield first, before - first
+                first = before
+            before = end
+        if before > first:
+            yield first, before - first
+        if before < file.count:
+            raise truncated_file_error(file.path, file.count, before)
 
     def _read_points(self, file, first, count):
         return read_points(self._reader(file), file.path, first, count)
@@ -159,22 +168,3 @@ def _point_record(buffer, header):
 def _in_one_piece(file, size):
     """Whether the chunks of a file are too large to be decoded apart."""
     return min(file.chunk, file.count) > LAS.max_blocks_per_chunk * size
-
-
-def _chunk_runs(file, size, chunks):
-    """Runs of as many chunks as `size` points hold, at least one: (LASzip record, first byte, index of the first point, [(points, bytes)])."""
-    record, start, table = chunks
-    first, points, run = 0, 0, []
-    for count, length in table.tolist():
-        # for the last chunk the table may state the capacity
-        count = min(count, file.count - first - points)
-        if run and points + count > size:
-            yield record, start, first, run
-            start, first, points, run = start + sum(length for _, length in run), first + points, 0, []
-        if count > 0:
-            run.append((count, length))
-            points += count
-    if run:
-        yield record, start, first, run
-    if first + points < file.count:
-        raise truncated_file_error(file.path, file.count, first + points)

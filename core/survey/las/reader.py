@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from ...io.weights import IO
 from ...lazy import laspy, pyproj
 from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
-
-if TYPE_CHECKING:
-    from pyproj import CRS
 
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
@@ -305,7 +302,7 @@ def _contradiction(written, heights, plane, vertical, place):
     return ""
 
 
-def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
+def _of_keys(values):
     """The horizontal and vertical CRS that GeoKeys name, None where they do not, and what contradicts itself in them."""
     plane, vertical = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC)), _coded(values.get(VERTICAL))
     if _of_heights(plane):
