@@ -1,22 +1,28 @@
-"""Blocks of points, as they come from files: projected into the road frame, and those near the road chosen, as compact records."""
+"""Blocks of points, as they come from files: projected into the road frame, and those near the road chosen, as compact records in a store."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..common.arrays import mask_runs
-from ..common.parallel import ScratchBuffers
+from ..common.parallel import ScratchBuffers, check_cancelled
+from ..common.progress import Progress
+from ..execution.phase import Executor, Phase, Recipe
 from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
+from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, packed_returns, valid_points
+from .las.reader import CloudHeader
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
-from .store.section_store import PartitionedPoints, SectionStore
+from .store.section_store import PartitionedPoints, SectionStore, StoreIndex
 from .trajectory.time_systems import unwrap_week
 from .weights import FRAME, READING
 
@@ -48,7 +54,7 @@ def _cells(start, end, bits):
     return first, ((np.arange(first, last + 1) << bits) + (1 << bits) // 2) * COORDINATE_SCALE
 
 
-class HeightFilter:
+class _HeightFilter:
     """Selects points near the rough height of the road, `drop` metres below the trajectory, up to `above` metres above it."""
 
     def __init__(self, frame: RoadFrame, drop: float, above: float = READING.kept_above_road):
@@ -93,7 +99,7 @@ class PointChoice:
 
 
 @dataclass
-class ChosenPoints:
+class _ChosenPoints:
     """What the points that are kept say of the survey."""
 
     histogram: HeightHistogram   # histogram, coverage: of those on the vehicle's own track
@@ -116,9 +122,9 @@ class BlockReader:
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
-    def chosen(self, drop: float) -> ChosenPoints:
+    def chosen(self, drop: float) -> _ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
+        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
 
     def rough_drop(self, blocks: Iterable[Any]) -> float:
         """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
@@ -133,7 +139,7 @@ class BlockReader:
         drops = np.concatenate([np.empty(0, np.int32), *samples])
         return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
-    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: Any, summary: BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
@@ -162,7 +168,7 @@ class BlockReader:
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken; chosen : ChosenPoints, which
+        summary : BlockSummary, which is updated; ground : _HeightFilter, without which points of any height are taken; chosen : _ChosenPoints, which
         counts those of other heights. Yields road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond
         the corridor the number is that of `beside_road`, and stations are the vehicle's.
         """
@@ -508,3 +514,127 @@ def _named(stretches):
     longest = sorted(stretches, key=lambda stretch: stretch[1] - stretch[2])[:READING.told_stretches]
     places = "; ".join(f"road {road}, station {start:.0f} to {end:.0f} m" for road, start, end in longest)
     return f"{sum(end - start for _, start, end in stretches):.0f} m ({places}{'; …' if len(stretches) > len(longest) else ''})"
+
+
+# Files are read into the section store part by part, by whoever runs phases. The height of the road is estimated from a look at the first blocks.
+
+
+@dataclass(frozen=True)
+class _PointsRead:
+    """Points in a section store, and what they say of the whole survey."""
+
+    store: SectionStore
+    summary: BlockSummary   # of all points
+    slots: TimeSlots   # of the points by which scanners are distinguished that no field distinguishes
+    sampled: list[tuple[np.ndarray, np.ndarray]]   # their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    moved: str   # moved, holes: as of `Coverage.warnings`
+    holes: str
+
+
+def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
+                progress: Progress) -> _PointsRead:
+    """Read all files into a store as a phase, `block` points at a time, after a look at the first of them."""
+    slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
+    blocks, summary, sampled = BlockReader(frame, choice, slots), BlockSummary(), []
+    with ParallelCloudReader(choice.layers) as readers:
+        ranges = list(readers.ranges(files, block))
+        drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
+    chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+    phase = Phase(_read_part, source, (), source.place, _join_parts)
+    points = block if store.folder is None else READING.part_points   # threads read block by block
+    if store.folder is not None:
+        store.folder.mkdir(exist_ok=True)
+    for part in executor.run(phase, source.items(points), progress):
+        summary.join(part.summary)
+        chosen.histogram.join(part.drops)
+        chosen.coverage.join(part.coverage)
+        sampled.append((part.times, part.places))
+        store.adopt(part.index, store.folder)
+    return _PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings())
+
+
+# The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
+
+
+@dataclass(frozen=True)
+class _PartOfFiles:
+    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
+
+    index: StoreIndex
+    summary: BlockSummary
+    drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
+    coverage: list[CountedCells]   # of its Coverage
+    times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
+    places: np.ndarray
+
+
+class _PartsOfFiles:
+    """Files whose points are read part by part into the folder of a store; several threads may do so.
+
+    store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
+    ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
+    """
+
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, drop: float, ranges: np.ndarray, block: int):
+        self.files, self.store, self.reader = files, store, reader
+        self.ground = _HeightFilter(reader.frame, drop, reader.choice.above_road)
+        self.drop, self.ranges, self.block = drop, ranges, block
+        self.clouds = ParallelCloudReader(reader.choice.layers)
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes read the same."""
+        store = self.store
+        files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
+        return Recipe("core.survey.blocks:_parts_of_files", dict(
+            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
+            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
+            ranges=self.ranges, block=self.block))
+
+    def items(self, points: int) -> list[tuple[int, int]]:
+        """(first, last + 1) numbers of blocks that have about so many points together."""
+        ends = np.cumsum(self.ranges[:, 2])
+        cuts = np.searchsorted(ends, np.arange(points, self.ranges[:, 2].sum(), points)) + 1
+        bounds = np.unique(np.r_[0, cuts, len(ends)]).tolist()
+        return list(zip(bounds[:-1], bounds[1:]))
+
+    def place(self, item: tuple[int, int]) -> str:
+        """What messages call blocks."""
+        number, first, _ = self.ranges[item[0]].tolist()
+        last, begin, count = self.ranges[item[1] - 1].tolist()
+        last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
+        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
+
+
+def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, frame: RoadFrame, choice: PointChoice, slots: TimeSlots,
+                    drop: float, **others: Any) -> _PartsOfFiles:
+    """What `_PartsOfFiles.recipe` describes."""
+    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
+    reader = BlockReader(frame, choice, slots)
+    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
+
+
+def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
+    """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
+    chosen, summary = source.reader.chosen(source.drop), BlockSummary()
+    with source.store.part() as store:
+        for number, first, count in source.ranges[item[0]:item[1]].tolist():
+            for points in source.clouds.points(source.files[number], first, count, source.block):
+                check_cancelled()
+                for part in source.reader.read(points, summary, source.ground, chosen, store):
+                    store.add(part)
+    index = store.index()
+    sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), *(np.concatenate(column) for column in sampled))
+
+
+def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
+    """One part of several that follow each other."""
+    summary = BlockSummary()
+    drops: dict[int, np.ndarray] = {}
+    for part in parts:
+        summary.join(part.summary)
+        drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
+    coverage = [cells for part in parts for cells in part.coverage]
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage,
+                        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))

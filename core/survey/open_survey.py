@@ -21,7 +21,7 @@ from ..lazy import pyproj
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
-from .blocks import PointChoice
+from .blocks import PointChoice, read_files
 from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
@@ -33,7 +33,6 @@ from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
-from .survey_reader import read_points
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
@@ -178,7 +177,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
     parts_at = read_at if shared is None else READING.parts_progress * read_at
-    read = read_points(files, frame, store, choice, settings.block, executor, progress.part(0.0, parts_at))
+    read = read_files(files, frame, store, choice, settings.block, executor, progress.part(0.0, parts_at))
     _say_left_out(files, frame, read, settings, progress)
     height = float(np.mean(list(read.heights.values())))
     feet = _check_height(height, crs, (fitted.seen, read.moved), progress)

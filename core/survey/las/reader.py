@@ -37,8 +37,7 @@ class CloudHeader:
     maximum: tuple[float, ...]
     scales: tuple[float, ...]   # (3,) metres
     crs: str   # WKT, metric, "" where the file has none
-    has_time: bool   # has_time, has_channel, has_colour: whether the points have gps_time, a scanner channel, and colours
-    has_channel: bool
+    has_time: bool   # has_time, has_colour: whether the points have gps_time and colours
     adjusted_time: bool   # whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk: int = 0   # points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour: bool = False
@@ -141,7 +140,7 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
-            cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
+            cloud_crs(header), "gps_time" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
             tuple(f"The file {path} contradicts its header: {note}." for note in (*mended.notes, *overflow)), units, _crs_of_records(header)[1])
 

@@ -179,14 +179,14 @@ def time_order(time: np.ndarray) -> np.ndarray:
 
 
 def _rotation(windows, given):
-    """(frequency, peak, "angle" or "gap") of one scanner's windows, None where there is no lattice."""
+    """(frequency, "angle" or "gap") of one scanner's windows, None where there is no lattice."""
     frequency, peak = strongest_rotation([rotation_spectrum(w.time, w.phasor) for w in windows], given)
     if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
-        return frequency, peak, "angle"
+        return frequency, "angle"
     times_only = [rotation_spectrum(w.time, np.ones(len(w.time), complex)) for w in windows]
     frequency, peak = strongest_rotation(times_only, given, signed=False)
     if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
-        return frequency, peak, "gap"
+        return frequency, "gap"
     return None
 
 
@@ -231,8 +231,8 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     if not rotations:
         return {}
     bins = _bins_of(survey, rotations)
-    stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
-    mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
+    stride = min(_stride(samples[key], frequency) for key, (frequency, _) in rotations.items())
+    mounts = {key: _mounting(samples[key], frequency) for key, (frequency, origin) in rotations.items() if origin == "angle"}
 
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
@@ -243,19 +243,19 @@ def _mirror_phases(survey, road, rotations, samples, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
     phases = {}
-    for key, (frequency, peak, origin) in rotations.items():
+    for key, (frequency, origin) in rotations.items():
         b = bins[key]
-        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
+        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, origin=origin)
         if mirror is not None:
             phases[key] = replace(mirror, **_line_properties(samples[key], mirror))
     return phases
 
 
 def _bins_of(survey, rotations):
-    return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
+    return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _) in rotations.items()}
 
 
-def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, float, str]],
+def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, str]],
                          mounts: dict[tuple[int, int], np.ndarray]) -> list[list[tuple[tuple[int, int], tuple[Any, ...]]]]:
     """The phase that sums phasors over time: of each stretch of `phase_stretch`, by its number, those of each scanner, as of `_PhasorBins`."""
     bins, result = _bins_of(survey, rotations), []
@@ -268,7 +268,7 @@ def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride
 
 def _phasor_sums(survey, number, records, rotation, mounting, bins):
     """Sums over the bins of the phasors of one scanner's records, relative to its even rotation."""
-    frequency, _, origin = rotation
+    frequency, origin = rotation
     time, phasor = _phasors(survey, number, records)
     # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
     phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounting[_direction_number(phasor)]
@@ -368,7 +368,6 @@ class MirrorPhase:
     pulse: float = 0.0   # usual share of a turn between neighbouring points of a line
     spacing: int = 1   # turns between neighbouring lines, more than 1 where lines were left out of the cloud
     leftward: bool = False   # whether the lines run to the left, offset increasing with time
-    peak: float = 1.0   # 0 to 1, how well the points fit this frequency
     origin: str = "angle"   # "angle" where the phase follows from the points' angles, "gap" where it follows from gaps in their times
 
     def turns_at(self, time: np.ndarray) -> np.ndarray:
