@@ -273,7 +273,9 @@ def _crs_of_records(header: Any) -> tuple[str, str]:
 @lru_cache(maxsize=256)
 def _stated(text, keys, doubles, place):
     """As of `_crs_of_records`, of the contents of the records."""
-    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(_key_values(keys, doubles))
+    # text that is not understood counts as none: the user is then asked for the CRS
+    written = _crs(pyproj.CRS.from_wkt, text.split(b"\0")[0].decode("utf-8", "replace").strip() or None)
+    plane, vertical, problem = _of_keys(_key_values(keys, doubles))
     if _of_heights(written):
         written, vertical = plane, written
         if written is None:
@@ -370,15 +372,12 @@ def _length(code, size):
 
 def _coded(code):
     """The CRS of an EPSG code, None where it is none."""
-    try:
-        return pyproj.CRS.from_epsg(code) if code in EPSG_CODES else None
-    except pyproj.exceptions.CRSError:
-        return None
+    return _crs(pyproj.CRS.from_epsg, code if code in EPSG_CODES else None)
 
 
-def _parsed(text):
-    """The CRS of WKT, None where it is empty or not understood: the user is then asked for one."""
+def _crs(read, given):
+    """The CRS that a reader of pyproj makes of what is given; None for None, or where it is not understood."""
     try:
-        return pyproj.CRS.from_wkt(text) if text.strip() else None
+        return None if given is None else read(given)
     except pyproj.exceptions.CRSError:
         return None

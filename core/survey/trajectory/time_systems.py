@@ -56,10 +56,13 @@ class ClockTimes:
 
 def hold_times(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are clock times, with dates or without, or dates."""
-    sample = [text for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    matches = [_match(text) for text in sample]
-    times = [match for match in matches if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
-    return bool(sample) and len(times) >= TRAJECTORY.most_of_texts * len(sample)
+    return _are_mostly(texts, lambda text: (match := _match(text)) and (match["hour"] or match["date"] and not match["date"].isdigit()))
+
+
+def _are_mostly(texts, say):
+    """Whether most texts of a column that are no blanks are such as a function tells."""
+    sample = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
+    return bool(sample) and sum(map(bool, map(say, sample))) >= TRAJECTORY.most_of_texts * len(sample)
 
 
 def _match(text):
@@ -169,9 +172,7 @@ def leap_seconds(seconds: np.ndarray) -> np.ndarray:
 
 def hold_angles(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
-    sample = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    return bool(sample) and sum(bool((match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
-                                for text in sample) >= TRAJECTORY.most_of_texts * len(sample)
+    return _are_mostly(texts, lambda text: (match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
 
 
 def angles_of(texts: Sequence[str]) -> np.ndarray:
