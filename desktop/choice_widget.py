@@ -1,6 +1,6 @@
 """A choice in the user's language; its value stays the word of commands and models."""
 
-from ..algorithms.texts import choice_word
+from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
 from .widgets import choices
 
@@ -9,7 +9,7 @@ class ChoiceWrapper(DialogWrapper):
     """A box with the choices of an enumeration in words."""
 
     def createWidget(self, **more):
-        widget = choices((choice_word(choice), choice) for choice in self.parameterDefinition().options())
+        widget = choices((tr(choice), choice) for choice in self.parameterDefinition().options())
         widget.setCurrentIndex(widget.findData(self.parameterDefinition().defaultValue()))
         widget.currentIndexChanged.connect(self.announce)
         return widget

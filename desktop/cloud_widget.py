@@ -31,19 +31,11 @@ class PointCloudsWidget(QWidget):
 
     def __init__(self, parent: QWidget | None = None, describes: bool = True):
         super().__init__(parent)
-        self.names = DropLine(self)
-        self.names.setPlaceholderText(tr("Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here"))
-        self.names.setClearButtonEnabled(True)
-        self.names.dropped.connect(self.add)
-        self.names.textChanged.connect(self._tell)
+        self.names = DropLine(self, clearButtonEnabled=True, dropped=self.add, textChanged=self._tell, editingFinished=self._remember_folder,
+                              placeholderText=tr("Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here"))
         self.names.textChanged.connect(self.changed)
-        self.names.editingFinished.connect(self._remember_folder)
-        self.button = QToolButton()
-        self.button.setText("…")
-        self.button.setToolTip(tr("Add point clouds"))
-        self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.menu = QMenu(self)
-        self.menu.aboutToShow.connect(self._fill_menu)
+        self.button = QToolButton(text="…", toolTip=tr("Add point clouds"), popupMode=QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu = QMenu(self, aboutToShow=self._fill_menu)
         self.button.setMenu(self.menu)
         self.message = wrapped() if describes else None
         if self.message is not None:  # what stands below does not move when the first file is named

@@ -31,12 +31,9 @@ class ColumnsWidget(QWidget):
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.path = ""
-        self.line = QLineEdit()
-        self.line.setPlaceholderText(tr("Recognised from the file"))
-        self.line.setClearButtonEnabled(True)
-        self.line.textChanged.connect(self._text_changed)
-        self.table = QTableWidget()
-        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        self.line = QLineEdit(placeholderText=tr("Recognised from the file"), clearButtonEnabled=True, textChanged=lambda text: self._read())
+        self.line.textChanged.connect(lambda text: self.changed.emit())
+        self.table = QTableWidget(editTriggers=QTableWidget.EditTrigger.NoEditTriggers)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.message = wrapped()
@@ -60,10 +57,6 @@ class ColumnsWidget(QWidget):
                 self.line.clear()
         self.path = path
         self._read()
-
-    def _text_changed(self):
-        self._read()
-        self.changed.emit()
 
     def _show_nothing(self):
         self.table.hide()

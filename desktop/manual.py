@@ -14,8 +14,7 @@ SCHEME = "lanewright"  # lanewright:detectcurbs is what an algorithm's Help butt
 
 class ManualWindow(QMainWindow):
     def __init__(self, parent=None):
-        super().__init__(parent)
-        self.setWindowTitle(tr("Lanewright manual"))
+        super().__init__(parent, windowTitle=tr("Lanewright manual"))
         self.resize(980, 760)
         self.browser = PageBrowser(self)
         self.setCentralWidget(self.browser)
@@ -56,9 +55,7 @@ class PageBrowser(QTextBrowser):
     """Markdown pages with links among them; addresses elsewhere open in the web browser."""
 
     def __init__(self, parent):
-        super().__init__(parent)
-        self.setOpenLinks(False)
-        self.anchorClicked.connect(self.follow)
+        super().__init__(parent, openLinks=False, anchorClicked=self.follow)
         self.document().setDefaultStyleSheet("td, th { padding: 2px 8px; } ")
 
     def follow(self, url):

@@ -73,10 +73,7 @@ class Menu(QObject):
         iface.addToolBarIcon(self.actions[0])
 
     def _add(self, title, what, tip, icon=QIcon()):
-        action = QAction(icon, title, self.iface.mainWindow())
-        action.setToolTip(f"Lanewright: {tip}")
-        action.setStatusTip(tip)
-        action.triggered.connect(lambda checked=False: what())
+        action = QAction(icon, title, self.iface.mainWindow(), toolTip=f"Lanewright: {tip}", statusTip=tip, triggered=lambda checked=False: what())
         self.iface.addPluginToMenu("Lanewright", action)
         self.actions.append(action)
         return action
@@ -111,17 +108,14 @@ class Menu(QObject):
         """The cross-section window, with the map waiting for a click; at the doubtful place that is looked at, its section."""
         if not all_is_there(self.iface):
             return
-        self._section_dock().show()
-        self.section.pick.click()
-        if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
-            self._show_section(self.doubts.seen)
-
-    def _section_dock(self):
         if self.section is None:
             from .review.section_dock import SectionDock
 
             self.section = SectionDock(self.iface)
-        return self.section
+        self.section.show()
+        self.section.pick.click()
+        if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
+            self._show_section(self.doubts.seen)
 
     def open_pairs(self):
         """The window that places UAV images by paint; what was found in it is there again when it is opened again."""

@@ -20,8 +20,7 @@ class RunsWindow(QDialog):
     """The window; a click on a column's head sorts by it."""
 
     def __init__(self, parent: QWidget | None = None):
-        super().__init__(parent)
-        self.setWindowTitle(tr("Table of the runs"))
+        super().__init__(parent, windowTitle=tr("Table of the runs"))
         self.tabs = QTabWidget()
         for title, head, rows in run_tables():
             self.tabs.addTab(_table(head, rows), title)

@@ -75,26 +75,25 @@ def _give(layer, symbol):
 def _area(colour, above):
     from qgis._3d import QgsPhongMaterialSettings, QgsPolygon3DSymbol
 
-    symbol, material = QgsPolygon3DSymbol(), QgsPhongMaterialSettings()
-    material.setAmbient(QColor(colour))  # the same from all sides: outlines run either way round
+    material = QgsPhongMaterialSettings()
     material.setDiffuse(QColor(colour).darker(500))
     material.setSpecular(QColor("#000000"))
-    symbol.setMaterialSettings(material)
-    symbol.setAltitudeClamping(Qgis.AltitudeClamping.Absolute)
-    symbol.setAltitudeBinding(Qgis.AltitudeBinding.Vertex)
-    symbol.setOffset(above)
-    return symbol
+    return _at_its_height(QgsPolygon3DSymbol(), material, colour, above)
 
 
 def _line(colour, above):
     """Simple lines: broad ones are buffered by QGIS, which loses their heights."""
     from qgis._3d import QgsLine3DSymbol, QgsSimpleLineMaterialSettings
 
-    symbol, material = QgsLine3DSymbol(), QgsSimpleLineMaterialSettings()
-    material.setAmbient(QColor(colour))
-    symbol.setMaterialSettings(material)
+    symbol = QgsLine3DSymbol()
     symbol.setRenderAsSimpleLines(True)
     symbol.setWidth(LINE_WIDTH)
+    return _at_its_height(symbol, QgsSimpleLineMaterialSettings(), colour, above)
+
+
+def _at_its_height(symbol, material, colour, above):
+    material.setAmbient(QColor(colour))  # the same from all sides: outlines run either way round
+    symbol.setMaterialSettings(material)
     symbol.setAltitudeClamping(Qgis.AltitudeClamping.Absolute)
     symbol.setAltitudeBinding(Qgis.AltitudeBinding.Vertex)
     symbol.setOffset(above)

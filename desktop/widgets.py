@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from weakref import WeakKeyDictionary
 
 from qgis.core import (
@@ -39,8 +40,7 @@ LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPa
 
 def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
     """A button that calls a function without arguments."""
-    push_button = QPushButton(text)
-    push_button.setToolTip(tip)
+    push_button = QPushButton(text, toolTip=tip)
     if what is not None:
         push_button.clicked.connect(lambda checked=False: what())
     return push_button
@@ -48,9 +48,7 @@ def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -
 
 def wrapped(text: str = "") -> QLabel:
     """A text in as many lines as it needs."""
-    label = QLabel(text)
-    label.setWordWrap(True)
-    return label
+    return QLabel(text, wordWrap=True)
 
 
 def choices(items: Iterable[tuple[str, object]], changed: Callable[[], object] | None = None) -> QComboBox:
@@ -168,9 +166,10 @@ def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequ
     extent, canvas = extent_of(layers, iface.mapCanvas().mapSettings().destinationCrs()), iface.mapCanvas()
     buttons = []
     if not extent.isEmpty():
+        show = partial(show_extent, canvas, extent.scaled(RIM), canvas.mapSettings().destinationCrs())
         if not canvas.extent().intersects(extent):
-            _show(canvas, extent)
-        buttons.append(button(tr("Show it"), lambda: _show(canvas, extent)))
+            show()
+        buttons.append(button(tr("Show it"), show))
     if warnings:
         shown = tr("1 warning…") if len(warnings) == 1 else tr("{count} warnings…").format(count=len(warnings))
         buttons.append(button(shown, lambda: show_text(iface.mainWindow(), title, "\n\n".join(warnings))))
@@ -194,13 +193,6 @@ def show_text(parent: QWidget, title: str, text: str) -> None:
     window.setTitle(title)
     window.setMessageAsPlainText(text)
     window.showMessage(False)
-
-
-def _show(canvas, extent):
-    shown = QgsRectangle(extent)
-    shown.scale(RIM)
-    canvas.setExtent(shown)
-    canvas.refresh()
 
 
 def _say(iface, text, level, *buttons):

@@ -5,15 +5,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..algorithms.destinations import package_and_table
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
+from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
 from ..core.lazy import fiona, np, shapely
 from . import measured_lines
 
 DRIVERS = {"gpkg": "GPKG", "fgb": "FlatGeobuf", "shp": "ESRI Shapefile", "geojson": "GeoJSON"}
-GEOMETRIES = {"PointZ": "3D Point", "LineStringZ": "3D LineString", "PolygonZ": "3D Polygon", "MultiLineStringZ": "3D MultiLineString",
-              "MultiPolygonZ": "3D MultiPolygon", "None": "None"}
+GEOMETRIES = {name: name if name == "None" else f"3D {name[:-1]}" for name in KIND_OF}   # fiona has none with measures
 KINDS = {"Point": POINT, "LineString": LINE, "Polygon": POLYGON, "None": TABLE}
 COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
 
@@ -79,7 +78,8 @@ class LayerFile(VectorSource):
                 geometry = layer.schema["geometry"]
                 self.stored_crs = _crs_text(layer.crs_wkt)
                 if layer.driver == "GeoJSON":
-                    self._check_crs()
+                    with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as native:
+                        check_crs_of_geojson(self.path, native.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
         except (*_fiona_errors(), ValueError) as problem:
             raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
         plain = geometry.replace("3D ", "").replace("Multi", "")
@@ -87,10 +87,6 @@ class LayerFile(VectorSource):
         self.has_z = geometry.startswith("3D")
         # fiona leaves measures out
         self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
-
-    def _check_crs(self):
-        with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as layer:
-            check_crs_of_geojson(self.path, layer.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
 
     def stored_rows(self, measures=False, check_validity=True):
         if measures and self.has_m:
@@ -153,9 +149,7 @@ def _crs_text(wkt):
     """WKT, "" for the entries that GeoPackage has for layers without a CRS."""
     from ..core.io.crs import parse_crs
 
-    if not wkt or parse_crs(wkt).name.lower().startswith("undefined "):
-        return ""
-    return wkt
+    return wkt if wkt and not parse_crs(wkt).name.lower().startswith("undefined ") else ""
 
 
 def write_layer(path, table, features, check_cancelled):
@@ -168,8 +162,7 @@ def write_layer(path, table, features, check_cancelled):
         return
 
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
-    schema = {"geometry": GEOMETRIES[features.geometry_type],
-              "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
+    schema = {"geometry": GEOMETRIES[features.geometry_type], "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
     options = {"layer": table or Path(path).stem, "description": features.description} if driver == "GPKG" else {}
     if wkt := crs_to_write(features, driver):
         options["crs_wkt"] = wkt

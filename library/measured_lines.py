@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..algorithms.vector_source import crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
-from ..core.io.local_files import open_vector
+from ..core.io.local_files import gdal_exceptions, open_vector
 from ..core.lazy import gdal, ogr, osr
 
 DRIVERS = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
@@ -17,8 +17,8 @@ def check_gdal(why):
     """Raise RoadExtractionError, with what to install, where GDAL's Python module is missing; `why` it is needed begins the sentence."""
     if find_spec("osgeo") is None:
         raise RoadExtractionError(
-            f"{why[0].upper()}{why[1:]}, which needs GDAL's Python module (osgeo), and it is not installed. Install lanewright[gdal] with pip, which "
-            "needs GDAL's own library and headers before Python 3.12, or gdal (conda-forge), or python3-gdal (Debian, Ubuntu).")
+            f"{why[0].upper()}{why[1:]}, which needs GDAL's Python module (osgeo), and it is not installed. Install lanewright[gdal] with pip, gdal "
+            "from conda-forge, or python3-gdal on Debian and Ubuntu.")
 
 
 def may_have_measures(path, table):
@@ -56,8 +56,6 @@ def rows(path, table, names, label):
 
 def write(path, table, features, check_cancelled):
     """A layer of lines with Z and M into a new file, or as a table of a GeoPackage."""
-    from ..core.io.local_files import gdal_exceptions
-
     suffix = Path(path).suffix.lower()
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     with gdal_exceptions():

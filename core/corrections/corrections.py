@@ -105,7 +105,10 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()
-    for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):
+    source, survey = parse_crs(features.crs), parse_crs(crs)
+    alike = source is None or survey is None or same_crs(source, survey)
+    geometries = features.geometries if alike else in_other_crs(features.geometries, source, survey)
+    for number, (geometry, row) in enumerate(zip(geometries, features.rows), start=1):
         action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
         for name, value, allowed in (("action", action, ACTIONS), ("target", target, TARGETS)):
             if value not in allowed:
@@ -119,8 +122,8 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
         if action == "take":
             lanes, kind = _second_reading(row.get("other"), target, number)
         for places in parts:
-            road, station, offset = _located(frame, places)
-            result.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note, lanes))
+            (road,), (station,), (offset,) = frame.locate_nearest(*places[len(places) // 2, :2, None])
+            result.rows.append(Correction(number, action, target, places, int(road), float(station), float(offset), kind, pattern, note, lanes))
     return result
 
 
@@ -146,14 +149,6 @@ def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[fl
                               "Copy the field other of that lane or marking line.")
 
 
-def _in_crs(features: Features, crs: str) -> list[Any]:
-    """The geometries of the layer in another CRS."""
-    source, target = parse_crs(features.crs), parse_crs(crs)
-    if source is None or target is None or same_crs(source, target):
-        return list(features.geometries)
-    return in_other_crs(features.geometries, source, target)
-
-
 def _parts_of(geometry: Any, row: dict[str, Any], frame: RoadFrame, number: int) -> Iterable[np.ndarray]:
     """Local places of each part of a row."""
     if geometry is None or geometry.is_empty:
@@ -175,14 +170,7 @@ def _place_of(row, frame, number):
     """Local x, y and no z of a row without geometry."""
     values = [row.get(name) for name in ("road", "station_m", "offset_m")]
     if any(value is None for value in values) or not 0 <= int(values[0]) < len(frame.roads):
-        raise RoadExtractionError(f"Row {number} of the corrections has neither a geometry nor a road of this survey with station_m and offset_m, "
-                                  "so its place is not known. Draw it as a point or line.")
+        raise RoadExtractionError(f"Row {number} of the corrections has neither a geometry nor a road of this survey with station_m and offset_m. "
+                                  "Draw it as a point or line.")
     x, y = frame.roads[int(values[0])].to_map(np.array([float(values[1])]), np.array([float(values[2])]))
     return float(x[0]), float(y[0]), np.nan
-
-
-def _located(frame, places):
-    """(road, station, offset) of the middle of places."""
-    middle = places[len(places) // 2:len(places) // 2 + 1]
-    road, s, d = frame.locate_nearest(middle[:, 0], middle[:, 1])
-    return int(road[0]), float(s[0]), float(d[0])

@@ -84,7 +84,9 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
         return lines, elements, lanes
     known = np.concatenate([lines.vertices, known])
     width = float(np.median(lines.width)) if len(lines) else lane_width
-    before = _rows_of_lines(lines)
+    names = [field.name for field in fields(lines) if field.name not in ("curve", "vertices", "start", "crs")]
+    before = [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
+              for k in range(len(lines))]
     lane_corrections = [part for correction in lane_corrections
                         for part in (_taken(correction, before, frame) if correction.action == "take" else [correction])]
     corrections.matched |= {correction.row for correction in corrections.of("lane")
@@ -124,12 +126,6 @@ def _taken(correction, pieces, frame):
         else:
             result.append(drawn)
     return result
-
-
-def _rows_of_lines(lines):
-    names = [field.name for field in fields(lines) if field.name not in ("curve", "vertices", "start", "crs")]
-    return [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
-            for k in range(len(lines))]
 
 
 def _rows_of_lanes(lanes):

@@ -250,10 +250,9 @@ def _chord_lengths(x, y):
 
 
 def _smoothed(values, reach=4):
-    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]] \
-        if len(values) > reach else values
-    if len(padded) == len(values):
+    if len(values) <= reach:
         return values
+    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]]
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 

@@ -69,10 +69,10 @@ class _Saturation:
         texts = []
         if self.at_highest >= ASPHALT.max_share_at_highest:
             texts.append(f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: brighter values "
-                         "were cut off, so that paint there may be no brighter than asphalt and be missed.")
+                         "were cut off, and paint there may be missed.")
         if self.at_lowest >= MAX_SHARE_AT_LOWEST:
             texts.append(f"{100 * self.at_lowest:.0f} % of the road's points have the lowest intensity, {self.lowest:.0f}: darker values "
-                         "were cut off, so that asphalt seems to be of one tone and its bright spots may be taken for paint.")
+                         "were cut off, and bright spots of asphalt may be taken for paint.")
         return " ".join([*texts, REMEDY]) if texts else ""
 
 

@@ -378,13 +378,8 @@ def _sums_of_piece(road_points, piece, settings):
     low, high = piece.limits
 
     def brightness(value):
-        scaled = value - np.float32(low)
-        scaled /= np.float32(max(high - low, 1e-9))
-        np.maximum(scaled, np.float32(0.0), out=scaled)
-        np.minimum(scaled, np.float32(1.0), out=scaled)
-        scaled *= np.float32(settings.beta)
-        scaled += np.float32(1.0 - settings.beta)
-        return scaled
+        share = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), np.float32(0.0), np.float32(1.0))
+        return share * np.float32(settings.beta) + np.float32(1.0 - settings.beta)
 
     return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
 
@@ -458,10 +453,9 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     if not places:
         return
     x, y = (np.concatenate(part) for part in zip(*places))
-    left, size, _, top, _, _ = image.geotransform
-    shown = np.isfinite(image.sample(x, y))
-    if shown.mean() < IMAGE.min_shown_share:
+    share = np.isfinite(image.sample(x, y)).mean()
+    if share < IMAGE.min_shown_share:
+        left, size, _, top, _, _ = image.geotransform
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
-            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
-            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")
+            f"{image.path} does not show these road points, of which {100 * share:.0f} % lie on it. It covers x {left:.1f} to "
+            f"{left + size * image.width:.1f} and y {top - size * image.height:.1f} to {top:.1f}. Give the image made from these points.")

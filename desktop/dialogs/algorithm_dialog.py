@@ -41,12 +41,14 @@ class LanewrightDialog(AlgorithmDialog):
                 places.addAction(tr("Database (PostGIS)…"), self.choose_database)
             self.save_button.setMenu(places)
         self.presets_button = self._button(tr("Presets"), tr("Settings that you keep under a name; data and destinations are no part of them"))
-        self.presets = QMenu(self)
-        self.presets.aboutToShow.connect(self._list_presets)
+        self.presets = QMenu(self, aboutToShow=self._list_presets)
         self.presets_button.setMenu(self.presets)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
         self.setParameters(presets(algorithm, QgsProject.instance(), utils.iface.activeLayer() if utils.iface is not None else None))
-        self._follow_survey()
+        wrappers = self.mainWidget().wrappers
+        if {"CORRECTIONS", "POINT_CLOUDS"} <= set(wrappers):
+            clouds = wrappers["POINT_CLOUDS"]
+            clouds.widgetValueHasChanged.connect(lambda *changed: self._offer_corrections(clouds.parameterValue()))
         self.named = name_by_survey(self, QgsProject.instance())
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
@@ -67,14 +69,8 @@ class LanewrightDialog(AlgorithmDialog):
             layers = [QgsProcessingUtils.mapLayerFromString(name, context, False) for name in names]
             tell_result(utils.iface, run.title, [layer for layer in layers if layer is not None], run.warnings)
 
-    def _follow_survey(self):
-        """Offer the corrections of the survey whose point clouds are chosen, and none of another."""
-        wrappers = self.mainWidget().wrappers
-        if {"CORRECTIONS", "POINT_CLOUDS"} <= set(wrappers):
-            clouds = wrappers["POINT_CLOUDS"]
-            clouds.widgetValueHasChanged.connect(lambda *changed: self._offer_corrections(clouds.parameterValue()))
-
     def _offer_corrections(self, clouds):
+        """Offer the corrections of the survey whose point clouds are chosen, and none of another."""
         try:
             survey = survey_name(cloud_files(clouds or [], tr("Point clouds")))
         except RoadExtractionError:  # not yet whole

@@ -29,13 +29,11 @@ class DatabaseDialog(QDialog):
     """The dialog; `choice` is what was chosen."""
 
     def __init__(self, parent: QWidget | None = None):
-        super().__init__(parent)
-        self.setWindowTitle(tr("Save the layers to a database"))
+        super().__init__(parent, windowTitle=tr("Save the layers to a database"))
         self.connection = QgsProviderConnectionComboBox(PROVIDER)
         self.schema = QComboBox()
         self.connection.connectionChanged.connect(self._other_connection)
-        self.prefix = QLineEdit()
-        self.prefix.setPlaceholderText(tr("such as b12_, where one schema holds several surveys"))
+        self.prefix = QLineEdit(placeholderText=tr("such as b12_, where one schema holds several surveys"))
         self.problem = wrapped()
         form = QFormLayout(self)
         form.addRow(self.problem)

@@ -148,10 +148,8 @@ def _smooth(values, sigma):
     if reach < 1:
         return values
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) * STEP / sigma) ** 2)
-    before, after = values[reach:0:-1], values[-2:-reach - 2:-1]
-    if sigma == SMOOTHED:
-        before, after = 2 * values[0] - before, 2 * values[-1] - after
-    return np.convolve(np.r_[before, values, after], weights / weights.sum(), "valid")
+    beyond = np.pad(values, reach, "reflect", reflect_type="odd" if sigma == SMOOTHED else "even")
+    return np.convolve(beyond, weights / weights.sum(), "valid")
 
 
 def _across(rows, places, course):

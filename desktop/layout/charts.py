@@ -256,10 +256,8 @@ def _draw_section(drawing, left, top, wide, tall, head, name, crossings, surface
         drawing.line([(x, base), (x, top + head)], "#b00020" if offset == 0 else "#c8c8c8", 0.15 if offset == 0 else 0.1)
         drawing.text(x, base + 2.2, f"{offset + 0.0:g}", 5.5)
     road = np.array([(offset, z) for offset, z, _, _ in crossings]).reshape(-1, 2)
-    if len(surface):
-        drawing.line(np.c_[x_of(surface[:, 0]), y_of(surface[:, 1])], DARK, 0.25)
-    else:
-        drawing.line(np.c_[x_of(road[:, 0]), y_of(road[:, 1])], DARK, 0.25)
+    ground = surface if len(surface) else road
+    drawing.line(np.c_[x_of(ground[:, 0]), y_of(ground[:, 1])], DARK, 0.25)
     for offset, z, output, curb in crossings:
         x, y = float(x_of(offset)), float(y_of(z))
         size = 0.45

@@ -5,7 +5,6 @@ from __future__ import annotations
 from qgis.core import (
     Qgis,
     QgsExpressionContextUtils,
-    QgsLayerTreeLayer,
     QgsLayerTreeModelLegendNode,
     QgsLayoutItemLegend,
     QgsLayoutPoint,
@@ -90,8 +89,12 @@ def add_legend(layout: QgsPrintLayout, classes: dict[QgsMapLayer, set[str]], roo
     legend.setEqualColumnWidth(False)
     legend.setBackgroundColor(QColor(186, 191, 196))  # white paint is seen on it, and letters can be read
     legend.setColumnSpace(3)
-    for sizes in SIZES:
-        _set_sizes(legend, *sizes)
+    for title, entry, symbol in SIZES:
+        legend.setSymbolHeight(symbol)
+        for style in STYLES:
+            legend_style = legend.style(style)
+            legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
+            legend.setStyle(style, legend_style)
         for columns in range(1, max(1, len(classes)) + 1):
             legend.setColumnCount(columns)
             size = _size(layout, legend)
@@ -114,7 +117,7 @@ def _size(layout, legend):
     return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
 
 
-def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, classes):
+def _leave_out_empty_classes(legend, node, classes):
     key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
     order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
     if order:
@@ -131,11 +134,3 @@ def _print_as_it_stands(legend, node, layer):
         if "[%" in label:
             QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(label))
             legend.model().refreshLayerLegend(node)
-
-
-def _set_sizes(legend, title, entry, symbol):
-    legend.setSymbolHeight(symbol)
-    for style in STYLES:
-        legend_style = legend.style(style)
-        legend_style.setTextFormat(text_format(entry if style == QgsLegendStyle.Style.SymbolLabel else title))
-        legend.setStyle(style, legend_style)

@@ -124,8 +124,8 @@ class _Pages:
         self.lines: list[MapLine] = lines_of(layers, self.crs, project, self.unit)
         self.axes = axes_of(road_lines(self.lines))
         if not self.axes:
-            raise RoadExtractionError(tr("No line of the layers runs along a road for 5 m or more, so sheets have no direction. Give the driving "
-                                         "lines, road edges or marking lines of a road map."))
+            raise RoadExtractionError(tr("No line of the layers runs along a road for 5 m, so sheets have no direction. Give driving lines, road "
+                                         "edges or marking lines of a road map."))
         self.frame = frame_of(choice)
         self.scale, self.sheets = self._sheets()
         self.accuracy = accuracy_of(layers)
@@ -165,8 +165,13 @@ class _Pages:
         for sheet in self.sheets:
             self._add_sheet(sheet)
         heights = tr("Heights in m: height system as stated")
-        drawings = [(tr("Longitudinal profile"), self._profiles(), [(tr("Ground along the axis"), "#b00020"), (heights, "")]),
-                    (tr("Cross-sections"), self._sections(ground),
+        size, interval = (self.frame.map.width(), self.frame.map.height() - NOTES), self.choice.section_interval
+        self._report()
+        profiles = profile_pages(self.axes, *size, self.scale, len(self.sheets)) if self.choice.profile else []
+        self._report()
+        sections = section_pages(self.axes, self.lines, ground, interval, *size) if interval else []
+        drawings = [(tr("Longitudinal profile"), profiles, [(tr("Ground along the axis"), "#b00020"), (heights, "")]),
+                    (tr("Cross-sections"), sections,
                      [(tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
                       (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK),
                       (tr("Offsets in m from the axis, left positive"), ""), (heights, "")])]
@@ -183,16 +188,6 @@ class _Pages:
     def _report(self):
         """How far the work is; between two reports QGIS lets the window live."""
         self.progress.report(self.pages / (self.pages + len(self.sheets)))
-
-    def _profiles(self):
-        self._report()
-        return profile_pages(self.axes, self.frame.map.width(), self.frame.map.height() - NOTES, self.scale,
-                             len(self.sheets)) if self.choice.profile else []
-
-    def _sections(self, ground):
-        self._report()
-        interval = self.choice.section_interval
-        return section_pages(self.axes, self.lines, ground, interval, self.frame.map.width(), self.frame.map.height() - NOTES) if interval else []
 
     def _new_page(self):
         self._report()

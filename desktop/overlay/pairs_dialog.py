@@ -41,7 +41,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.io.geotiff import IntensityImage
 from ...processing_provider.results.road_maps import runs_of
 from ...processing_provider.texts import tr
-from ...products.overlay.control_points import REQUIRED_COLUMNS, SourceImage, open_image
+from ...products.overlay.control_points import SourceImage, open_image
 from ...products.overlay.matching.places import highest_order, left_out_residuals
 from ...products.overlay.matching.propose import AMBIGUOUS, AWAY, REPEATS, WEAK
 from ...products.overlay.rough_place import pair_cutouts
@@ -57,8 +57,7 @@ class PairsDialog(QDialog):
     """The window; `images` are its ImagePairs."""
 
     def __init__(self, iface):
-        super().__init__(iface.mainWindow())
-        self.setWindowTitle(tr("Control points from paint"))
+        super().__init__(iface.mainWindow(), windowTitle=tr("Control points from paint"))
         self.setWindowFlag(Qt.WindowType.WindowMaximizeButtonHint)
         self.iface = iface
         self.images: list[ImagePairs] = []
@@ -70,42 +69,28 @@ class PairsDialog(QDialog):
         self.resize(1160, 740)
 
     def _build(self):
-        self.list = QListWidget()
-        self.list.setWordWrap(True)
-        self.list.currentRowChanged.connect(lambda row: self._show_pairs())
+        self.list = QListWidget(wordWrap=True, currentRowChanged=lambda row: self._show_pairs())
         self.intensity = QgsMapLayerComboBox()
         self.intensity.setFilters(QgsMapLayerProxyModel.Filter.RasterLayer)
         self._prefer_intensity()
-        self.size = QDoubleSpinBox()
-        self.size.setRange(0.0, 1.0)
-        self.size.setDecimals(3)
-        self.size.setSingleStep(0.005)
-        self.size.setSuffix(" m")
-        self.size.setSpecialValueText(tr("as the image says"))
+        self.size = QDoubleSpinBox(decimals=3, minimum=0.0, maximum=1.0, singleStep=0.005, suffix=" m", specialValueText=tr("as the image says"))
         self.rough_button = button(tr("Two points by hand…"), self.point, tr(
             "Where the chosen image says nothing of its position: two places clicked in it and in the intensity image"))
         self.propose_button = button(tr("Propose control points"), self.propose)
-        form = QFormLayout()
-        form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
+        form = QFormLayout(rowWrapPolicy=QFormLayout.RowWrapPolicy.WrapAllRows)
         form.addRow(tr("Intensity image"), self.intensity)
         form.addRow(tr("Pixel size of the image on the ground"), self.size)
         files = row(button(tr("Add images…"), lambda: self.add(self.ask_for_images())), button(tr("Remove"), self._remove))
         left = column(QWidget(), QLabel(tr("Images")), (self.list, 1), files, form, row(self.rough_button, self.propose_button), rim=0)
-        self.pairs = QListWidget()
-        self.pairs.setViewMode(QListView.ViewMode.IconMode)
-        self.pairs.setResizeMode(QListView.ResizeMode.Adjust)
-        self.pairs.setMovement(QListView.Movement.Static)
-        self.pairs.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        self.pairs.setIconSize(QSize(2 * SIDE + GAP, SIDE))
-        self.pairs.setSpacing(6)
-        self.pairs.itemChanged.connect(self._ticked)
-        self.pairs.itemDoubleClicked.connect(self._zoom)
+        self.pairs = QListWidget(
+            viewMode=QListView.ViewMode.IconMode, resizeMode=QListView.ResizeMode.Adjust, movement=QListView.Movement.Static, spacing=6,
+            selectionMode=QAbstractItemView.SelectionMode.ExtendedSelection, iconSize=QSize(2 * SIDE + GAP, SIDE), itemChanged=self._ticked,
+            itemDoubleClicked=self._zoom)
         self.message = wrapped(tr("Add images, choose the intensity image, and let control points be proposed."))
         accept, refuse = (button(text, lambda accepted=accepted: self.accept_selected(accepted)) for text, accepted in (
             (tr("Accept the selected"), True), (tr("Refuse the selected"), False)))
         self.place_button = button(tr("Georeference the images"), self.place)
-        self.bar = QProgressBar()
-        self.bar.hide()
+        self.bar = QProgressBar(visible=False)
         seen = QLabel(tr("Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map."))
         right = column(QWidget(), seen, (self.pairs, 1), self.message, self.bar, row(accept, refuse, None, self.place_button), rim=0)
         parts = QSplitter()
@@ -303,8 +288,7 @@ class TwoPointsDialog(QDialog):
     """The image beside the intensity image; `layer` has the points once there are two in each."""
 
     def __init__(self, path: str, intensity: QgsRasterLayer, parent: QWidget | None = None):
-        super().__init__(parent)
-        self.setWindowTitle(tr("Two points in both images"))
+        super().__init__(parent, windowTitle=tr("Two points in both images"))
         self.image: SourceImage = open_image(path)
         self.intensity = intensity
         self.photo = QgsRasterLayer(path, "image")
@@ -324,10 +308,8 @@ class TwoPointsDialog(QDialog):
         view.setDestinationCrs(layer.crs() if layer is self.intensity else QgsCoordinateReferenceSystem())
         view.setLayers([layer])
         view.setExtent(layer.extent())
-        tool = QgsMapToolEmitPoint(view)
-        tool.canvasClicked.connect(lambda point, button, view=view: self.point_at(view, point))
-        view.setMapTool(tool)
-        self.tools.append(tool)
+        self.tools.append(QgsMapToolEmitPoint(view, canvasClicked=lambda point, button: self.point_at(view, point)))
+        view.setMapTool(self.tools[-1])
         return view
 
     def done(self, result: int) -> None:
@@ -401,6 +383,9 @@ SIDE = 116       # px, of a cut-out
 GAP = 4          # px, between the two of a pair
 CROSS = 7        # px, half the cross in the middle
 GREEN, RED = "#33a02c", "#e6323c"
+# Why a pair is not accepted by default, in the user's language
+REASONS = {WEAK: tr("looks different"), REPEATS: tr("repeats nearby"), AWAY: tr("does not fit the others"),
+           AMBIGUOUS: tr("all of it fits elsewhere too")}
 
 
 class ImagePairs:
@@ -457,12 +442,11 @@ class ImagePairs:
     def _write_residuals(self, layer):
         """How far off the accepted pairs place each one, anew."""
         rows = self.rows()
-        places = {name: np.array([float(value) for value in values]) for name, values in zip(REQUIRED_COLUMNS, zip(*(
-            (row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows)))}
+        pixel, line, x, y = _places(rows)
+        x, y = x - x.mean(), y - y.mean()
         used = np.array([bool(row["accepted"]) for row in rows])
-        x, y = places["easting"] - places["easting"].mean(), places["northing"] - places["northing"].mean()
         order = highest_order(x[used], y[used]) if used.any() else 0
-        residual = left_out_residuals(x, y, places["pixel"], places["line"], used, order) if order else np.full(len(rows), np.nan)
+        residual = left_out_residuals(x, y, pixel, line, used, order) if order else np.full(len(rows), np.nan)
         column = layer.fields().lookupField("residual")
         layer.dataProvider().changeAttributeValues(
             {row.id(): {column: float(value) if value == value else NULL} for row, value in zip(rows, residual)})
@@ -470,8 +454,8 @@ class ImagePairs:
     @property
     def order(self) -> int:
         """Of the polynomial that the accepted pairs determine; 0: none."""
-        places = np.array([(row.geometry().constGet().x(), row.geometry().constGet().y()) for row in self.rows() if row["accepted"]])
-        return highest_order(*places.T) if len(places) else 0
+        accepted = [row for row in self.rows() if row["accepted"]]
+        return highest_order(*_places(accepted)[2:]) if accepted else 0
 
     def summary(self) -> str:
         """What is known of the image, for the list of images."""
@@ -491,22 +475,21 @@ class ImagePairs:
         rows = self.rows()
         if len(rows) < 2:
             return []
-        columns = np.array([(row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows]).T
-        return [_side_by_side(*pair) for pair in pair_cutouts(open_image(self.path), IntensityImage.open(intensity_path), *columns, side=SIDE)]
+        images = open_image(self.path), IntensityImage.open(intensity_path)
+        return [_side_by_side(*pair) for pair in pair_cutouts(*images, *_places(rows), side=SIDE)]
+
+
+def _places(rows):
+    """(4, N) pixel, line, easting and northing of pairs."""
+    return np.array([(row["pixel"], row["line"], row.geometry().constGet().x(), row.geometry().constGet().y()) for row in rows], float).T
 
 
 def pair_text(row) -> str:
     """Number, likeness and residual of a pair."""
     residual = row["residual"]
     distance = tr("{residual:.1f} cm off").format(residual=100.0 * residual) if residual not in (None, NULL) else "–"
-    why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{_words(row['why'])}"
+    why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{REASONS.get(row['why'], row['why'])}"
     return tr("{number}: likeness {score:.2f}, {away}").format(number=row["point"], score=row["score"], away=distance) + why
-
-
-def _words(why):
-    """Why a pair is not accepted by default, in the user's language."""
-    return {WEAK: tr("looks different"), REPEATS: tr("repeats nearby"), AWAY: tr("does not fit the others"),
-            AMBIGUOUS: tr("all of it fits elsewhere too")}.get(why, why)
 
 
 def _side_by_side(*cuts):

@@ -8,7 +8,7 @@ from pathlib import Path
 from textwrap import shorten
 
 from qgis import utils
-from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsTask, QgsVectorLayer
+from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsTask, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QColor, QKeyEvent, QKeySequence
@@ -17,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
     QCheckBox,
     QDockWidget,
     QFileDialog,
+    QLabel,
     QLineEdit,
     QListWidget,
     QListWidgetItem,
@@ -58,8 +59,7 @@ class DoubtDock(QDockWidget):
     stage_wanted = pyqtSignal(str, dict)
 
     def __init__(self, iface):
-        super().__init__(tr("Doubtful places"), iface.mainWindow())
-        self.setObjectName("LanewrightDoubtfulPlaces")
+        super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
         self.iface = iface
         self.places: list[Doubt] = []
         self.decided: dict[int, str] = {}   # id of a piece: what was decided about it and not yet run
@@ -75,17 +75,13 @@ class DoubtDock(QDockWidget):
         self.tool.drawn.connect(self._line_drawn)
         self.tool.given_up.connect(self._stop_drawing)
         self.tool.too_short.connect(lambda: self._hint(tr("A line takes two clicks at least.")))
-        self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas())
-        self.pick_tool.canvasClicked.connect(lambda point, button: self.pick_at(point))
+        self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.pick_at(point))
         self._build()
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
         self.visibilityChanged.connect(lambda visible: self._highlight() if visible else self._unlight())
         QgsProject.instance().layersWillBeRemoved.connect(self._forget)
         self.arrived: set[str] = set()   # layers that came into the project; a run adds them one by one, and says what they are after that
-        self.settled = QTimer(self)
-        self.settled.setSingleShot(True)
-        self.settled.setInterval(ARRIVED)
-        self.settled.timeout.connect(self._follow)
+        self.settled = QTimer(self, singleShot=True, interval=ARRIVED, timeout=self._follow)
         QgsProject.instance().layersAdded.connect(self._note_layers)
 
     def _build(self):
@@ -98,15 +94,11 @@ class DoubtDock(QDockWidget):
                               (tr("Lanes"), "lane"), (tr("Warnings"), "warning")), self._begin_again)
         self.order = choices(((tr("The most doubtful first"), True), (tr("Along the road"), False)), self._begin_again)
         self.undecided = QCheckBox(tr("Only what is not done"))
-        self.list = QListWidget()
-        self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        self.list.setWordWrap(True)
-        self.list.setToolTip(tr("What is doubtful here. The buttons are about what is selected."))
-        self.list.itemSelectionChanged.connect(self._selected)
-        self.list.itemClicked.connect(lambda item: self._look_at())
+        self.list = QListWidget(
+            wordWrap=True, selectionMode=QAbstractItemView.SelectionMode.ExtendedSelection, itemSelectionChanged=self._selected,
+            toolTip=tr("What is doubtful here. The buttons are about what is selected."), itemClicked=lambda item: self._look_at())
         self.photo = PhotoButton()
-        self.note = QLineEdit()
-        self.note.setPlaceholderText(tr("Note, kept with the correction"))
+        self.note = QLineEdit(placeholderText=tr("Note, kept with the correction"))
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
         self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
         self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
@@ -119,12 +111,10 @@ class DoubtDock(QDockWidget):
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
             menu.addAction(title, lambda target=target: self.begin_draw(target))
         self.draw_button.setMenu(menu)
-        self.snap = QCheckBox(tr("Snap to curb and paint"))   # short: the widest row takes its width from the map
-        self.snap.setToolTip(tr("Lay drawn lines onto curbs and paint"))
-        self.snap.setChecked(True)
-        self.hint = wrapped()  # in the message bar it would lie on the map, and clicks on it would be lost
-        self.hint.setStyleSheet("background: #fff3c4; color: #222222; padding: 4px")
-        self.hint.hide()
+        # short: the widest row takes its width from the map
+        self.snap = QCheckBox(tr("Snap to curb and paint"), toolTip=tr("Lay drawn lines onto curbs and paint"), checked=True)
+        # in the message bar it would lie on the map, and clicks on it would be lost
+        self.hint = QLabel(wordWrap=True, styleSheet="background: #fff3c4; color: #222222; padding: 4px", visible=False)
         self.kept = wrapped()
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
         self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
@@ -135,8 +125,7 @@ class DoubtDock(QDockWidget):
         self.steps = StepsPanel()
         self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
         self.steps.stage_wanted.connect(self.stage_wanted)
-        self.tabs = QTabWidget()
-        self.tabs.setDocumentMode(True)
+        self.tabs = QTabWidget(documentMode=True)
         self.tabs.addTab(body, tr("Doubtful places"))
         self.tabs.addTab(self.steps, tr("Steps"))
         self.tabs.currentChanged.connect(lambda tab: self._tell())
@@ -146,11 +135,8 @@ class DoubtDock(QDockWidget):
         """A button; `key` presses it while the window has the focus."""
         push_button = button(text, what, f"{tip} ({key})" if key else tip)
         if key:
-            action = QAction(tip, self)
-            action.setShortcut(QKeySequence(key))
-            action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            action.triggered.connect(lambda checked=False: push_button.click())
-            self.addAction(action)
+            self.addAction(QAction(tip, self, shortcut=QKeySequence(key), shortcutContext=Qt.ShortcutContext.WidgetWithChildrenShortcut,
+                                   triggered=lambda checked=False: push_button.click()))
         return push_button
 
     def remove(self) -> None:
@@ -196,7 +182,8 @@ class DoubtDock(QDockWidget):
                 self._come_to_front()
 
     def _come_to_front(self):
-        """Stand before the Results Viewer, which opens with the first report: below it the list has room for three lines."""
+        """Be shown, before the Results Viewer, which opens with the first report: below it the list has room for three lines."""
+        self.show()
         main, results = self.iface.mainWindow(), getattr(utils.plugins.get("processing"), "resultsDock", None)
         if results is not None and results.isVisible() and results not in main.tabifiedDockWidgets(self) \
                 and main.dockWidgetArea(results) == main.dockWidgetArea(self) and not self.isFloating() and not results.isFloating():
@@ -208,7 +195,6 @@ class DoubtDock(QDockWidget):
         self._take(road_map)
         self._fill()
         self.tabs.setCurrentWidget(self.steps)
-        self.show()
         self._come_to_front()
 
     def _take(self, road_map):
@@ -233,7 +219,6 @@ class DoubtDock(QDockWidget):
             return
         self._take(road_map)
         self.tabs.setCurrentIndex(0)
-        self.show()
         self._come_to_front()
         for _ in self.places:
             self.at = (self.at + step) % len(self.places) if self.at >= 0 else 0 if step > 0 else len(self.places) - 1
@@ -310,13 +295,9 @@ class DoubtDock(QDockWidget):
         if self.seen is None or self.seen == seen and not again:
             return
         self.photo.show_photo(photo_of(QgsProject.instance(), self.seen.middle, place.crs))
-        self._zoom(self.seen)
+        longer = max(self.seen.extent.width(), self.seen.extent.height())
+        show_extent(self.iface.mapCanvas(), self.seen.extent.buffered(max(0.15 * longer, (LEAST_VIEW - longer) / 2)), place.crs)
         self.shown.emit(self.seen)
-
-    def _zoom(self, place):
-        extent = QgsRectangle(place.extent)
-        extent.grow(max(0.15 * max(extent.width(), extent.height()), (LEAST_VIEW - max(extent.width(), extent.height())) / 2))
-        show_extent(self.iface.mapCanvas(), extent, place.crs)
 
     # -- what is selected -------------------------------------------------------------------------
 

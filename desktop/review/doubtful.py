@@ -23,10 +23,6 @@ APART = 5.0         # cm between the two boundary methods, as in the report
 SHORTEST = 2.0      # m: shorter pieces are not worth a stop
 SAME_PLACE = 10.0   # m of station within which doubts are looked at together
 
-# Share of a piece that is likely to be wrong, by which places are ranked. Of a piece with a confidence it is 1 - confidence.
-# Methods that differ: one of the two is wrong. Bridged and inferred pieces without a confidence: as an unsure one.
-LIKELY_WRONG_PIECE = {"apart": 0.5, "guessed": 1.0 - UNSURE}
-
 
 @dataclass(frozen=True)
 class Doubt:
@@ -38,11 +34,6 @@ class Doubt:
     extent: QgsRectangle
     middle: QgsPointXY
     crs: QgsCoordinateReferenceSystem
-
-    @property
-    def reasons(self) -> tuple[str, ...]:
-        """What is doubtful there, one line a piece."""
-        return tuple(piece.text for piece in self.pieces)
 
     @property
     def doubt(self) -> float:
@@ -71,7 +62,7 @@ def _doubtful_rows(road_map, output):
     result = []
     for feature in layer.getFeatures() if {"station_m", "road"} <= set(names) else ():
         row = dict(zip(names, feature.attributes()))
-        why = reason(row)
+        why, share = reason(row)
         if why and not feature.geometry().isEmpty():
             target = TARGETS[output]
             reading = str(row.get("other") or "")
@@ -79,27 +70,21 @@ def _doubtful_rows(road_map, output):
                 why += tr("; almost as likely: {reading}").format(reading=second_reading(reading))
             result.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, course_of(feature.geometry()),
                                         int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
-                                        (_number(row.get("length_m")) or 0.0) * _share_wrong(row), target, _number(row.get("offset_m")), reading))
+                                        (_number(row.get("length_m")) or 0.0) * share, target, _number(row.get("offset_m")), reading))
     return result
 
 
-def reason(row: dict) -> str:
-    """Why a feature of these fields is doubtful, "" where it is not."""
+def reason(row: dict) -> tuple[str, float]:
+    """Why a feature of these fields is doubtful, "" where it is not, and the share of it that is likely to be wrong."""
+    apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
     if (_number(row.get("length_m")) or 0.0) < SHORTEST or row.get("status") in DECIDED:
-        return ""
-    apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
+        return "", 0.0
     if apart is not None and apart > APART:
-        return tr("the two boundary methods lie {apart:.0f} cm apart").format(apart=apart)
+        return tr("the two boundary methods lie {apart:.0f} cm apart").format(apart=apart), LIKELY_WRONG["apart"]
+    share = LIKELY_WRONG["guessed"] if sure is None else 1.0 - sure
     if sure is not None and sure < UNSURE:
-        return tr("confidence {sure:.2f}").format(sure=sure)
-    return tr("not measured") if row.get("status") in GUESSED else ""
-
-
-def _share_wrong(row):
-    apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
-    if apart is not None and apart > APART:
-        return LIKELY_WRONG_PIECE["apart"]
-    return LIKELY_WRONG_PIECE["guessed"] if sure is None else 1.0 - sure
+        return tr("confidence {sure:.2f}").format(sure=sure), share
+    return tr("not measured") if row.get("status") in GUESSED else "", share
 
 
 def _number(value):
@@ -150,9 +135,10 @@ LEAST_GAP = 15.0   # m without an edge, or of grown surface, that are a place: a
 ROAD_END = 10.0    # m from the end of a road within which a lane may end
 ALONG = ("PASSES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")  # lines that say where a station lies, best first
 AWAY = ("corner", "side_street", "island")  # edges that do not run along the road
-# Share of a stretch that is likely to be wrong, by which places are ranked, and m where there is no stretch: an edge that is not drawn
-# is missing or not there, of grown surface one margin of two is, a lane ends or goes on, and who reads a warning looks there first.
-LIKELY_WRONG = {"gap": 0.5, "grown": 0.5, "lane_end": 5.0, "warning": 1.0}
+# Share that is likely to be wrong, by which places are ranked, and m where there is no stretch: of two methods that differ one is wrong; bridged
+# and inferred pieces are as an unsure one where they have no confidence (else 1 - confidence); an edge that is not drawn is missing or not there;
+# of grown surface one margin of two is; a lane ends or goes on; and who reads a warning looks there first.
+LIKELY_WRONG = {"apart": 0.5, "guessed": 1.0 - UNSURE, "gap": 0.5, "grown": 0.5, "lane_end": 5.0, "warning": 1.0}
 
 
 @dataclass(frozen=True)
@@ -179,7 +165,7 @@ def missing_edges(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
     """Stretches along which one side of a road has no edge."""
     covered = defaultdict(list)
     for feature, road, start, end in _rows(road_map.layer("ROAD_EDGES"), "side"):
-        if _value(feature, "kind") != "island":
+        if feature.attributeMap().get("kind") != "island":
             covered[road, feature["side"]].append((start, end))
     for road, (start, end) in sorted(_roads(road_map).items()):
         for side in ("left", "right") if covered else ():
@@ -230,7 +216,7 @@ def along(road_map: RoadMap, road: int, start: float, end: float) -> QgsGeometry
     for output in ALONG:
         for feature, its_road, first, last in _rows(road_map.layer(output)):
             inside = min(last, end) - max(first, start)
-            if its_road == road and last > first and inside > most and _value(feature, "kind") not in AWAY:
+            if its_road == road and last > first and inside > most and feature.attributeMap().get("kind") not in AWAY:
                 best, most = _part(feature, first, last, max(first, start), min(last, end)), inside
         if most > 0.9 * (end - start):
             break
@@ -243,7 +229,7 @@ def _part(feature, first, last, start, end):
     curve = next(geometry.constParts())
     scale = curve.length() / (last - first)
     begin, finish = (start - first) * scale, (end - first) * scale
-    if _value(feature, "direction") == -1:
+    if feature.attributeMap().get("direction") == -1:
         begin, finish = curve.length() - finish, curve.length() - begin
     part = QgsGeometry(curve.curveSubstring(max(begin, 0.0), min(finish, curve.length())))
     part.get().dropZValue()
@@ -257,11 +243,6 @@ def _rows(layer: QgsMapLayer | None, *needed: str) -> Iterator[tuple[QgsFeature,
         location = [feature["road"], feature["station_m"], feature["end_m"]]
         if not any(value in (None, NULL) for value in location) and not feature.geometry().isEmpty():
             yield feature, int(location[0]), min(location[1:]), max(location[1:])
-
-
-def _value(feature, name):
-    """The value of a field, None where there is no such field."""
-    return feature[name] if feature.fieldNameIndex(name) >= 0 else None
 
 
 def _roads(road_map):

@@ -20,7 +20,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QSize, Qt, QUrl
-from qgis.PyQt.QtGui import QDesktopServices, QIcon, QImageReader, QPixmap
+from qgis.PyQt.QtGui import QCursor, QDesktopServices, QIcon, QImageReader, QPixmap
 from qgis.PyQt.QtWidgets import QPushButton
 
 from ...processing_provider.texts import tr
@@ -75,12 +75,9 @@ class PhotoButton(QPushButton):
     """The photo of a place, small; a click opens it as the computer opens photos. Hidden where there is none."""
 
     def __init__(self):
-        super().__init__()
+        super().__init__(flat=True, cursor=QCursor(Qt.CursorShape.PointingHandCursor), visible=False, clicked=lambda checked=False:
+                         QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.photo.path))))
         self.photo: Photo | None = None
-        self.setFlat(True)
-        self.setCursor(Qt.CursorShape.PointingHandCursor)
-        self.clicked.connect(lambda checked=False: QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.photo.path))))
-        self.hide()
 
     def show_photo(self, photo: Photo | None) -> None:
         """Show a photo, read no larger than it is shown; None for none."""

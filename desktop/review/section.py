@@ -99,16 +99,12 @@ def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section 
                 geometry = feature.geometry()
                 distance = geometry.distance(point)
                 if distance < nearest:
-                    along = geometry.lineLocatePoint(point)
-                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(along)) + (180.0 if _against_the_road(feature) else 0.0)
+                    along = math.degrees(geometry.interpolateAngle(geometry.lineLocatePoint(point)))
+                    # driving lines run with the traffic
+                    nearest, azimuth = distance, along + (180.0 if feature.attributeMap().get("direction") == -1 else 0.0)
         if azimuth is not None:
             return Section(x, y, azimuth % 360.0)
     return None
-
-
-def _against_the_road(feature):
-    """Whether a line runs against the road: driving lines run with the traffic."""
-    return feature.fieldNameIndex("direction") >= 0 and feature["direction"] == -1
 
 
 def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossing]:

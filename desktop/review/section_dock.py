@@ -30,12 +30,11 @@ class SectionDock(QDockWidget):
     """The window; `show_at` shows a place."""
 
     def __init__(self, iface):
-        super().__init__(tr("Cross-section"), iface.mainWindow())
-        self.setObjectName("LanewrightCrossSection")
+        super().__init__(tr("Cross-section"), iface.mainWindow(), objectName="LanewrightCrossSection")
         self.iface = iface
         self.view = SectionView()
-        self.tool = QgsMapToolEmitPoint(iface.mapCanvas())
-        self.tool.canvasClicked.connect(lambda point, button: self.show_at(point, iface.mapCanvas().mapSettings().destinationCrs()))
+        self.tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.show_at(
+            point, iface.mapCanvas().mapSettings().destinationCrs()))
         self.band = None
         self.section = self.road_map = self.task = None
         self._asked: set[str] = set()  # road maps whose user was asked where the point clouds are
@@ -45,13 +44,8 @@ class SectionDock(QDockWidget):
         ahead = button("▶", lambda: self.step(STEP), tr("A metre ahead along the road"))
         for arrow in (back, ahead):
             arrow.setFixedWidth(34)
-        self.thickness = QDoubleSpinBox()
-        self.thickness.setRange(0.02, 5.0)
-        self.thickness.setSingleStep(0.05)
-        self.thickness.setValue(THICKNESS)
-        self.thickness.setSuffix(" m")
-        self.thickness.setToolTip(tr("Length of road from which points are shown"))
-        self.thickness.valueChanged.connect(lambda value: self._draw())
+        self.thickness = QDoubleSpinBox(minimum=0.02, maximum=5.0, singleStep=0.05, value=THICKNESS, suffix=" m", toolTip=tr(
+            "Length of road from which points are shown"), valueChanged=lambda value: self._draw())
         self.setWidget(column(QWidget(), row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None), (self.view, 1), rim=4))
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         iface.mainWindow().resizeDocks([self], [int(SHARE * iface.mainWindow().height())], Qt.Orientation.Vertical)
@@ -101,7 +95,12 @@ class SectionDock(QDockWidget):
     def _show(self, section: Section, road_map: RoadMap) -> None:
         self.section, self.road_map = section, road_map
         self.show()
-        self._draw_line()
+        if self.band is None:
+            self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
+            self.band.setColor(QColor("#ff00c8"))
+            self.band.setWidth(2)
+        self.band.setToGeometry(section.line(), road_map.vectors[0].crs())
+        self.band.show()
         self._stop_reading()  # what is under way belongs to the place before
         clouds = self._clouds(road_map)
         if not clouds:
@@ -161,16 +160,6 @@ class SectionDock(QDockWidget):
         middle = middle_of(lines)
         scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
         self.view.show_section(points, lines, message or tr("No points lie here."), scanline, corners(self.section, layers))
-
-    # -- the line on the map --------------------------------------------------------------------------
-
-    def _draw_line(self):
-        if self.band is None:
-            self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
-            self.band.setColor(QColor("#ff00c8"))
-            self.band.setWidth(2)
-        self.band.setToGeometry(self.section.line(), self.road_map.vectors[0].crs())
-        self.band.show()
 
     def _hide_line(self, visible):
         if self.band is not None:

@@ -120,16 +120,16 @@ class StepsPanel(QWidget):
         super().__init__()
         self.steps: list[Step] = []
         self.of = wrapped()
-        self.tree = QTreeWidget()
+        self.tree = QTreeWidget(itemSelectionChanged=self._selected)
         self.tree.setHeaderLabels([tr("Step"), tr("State")])
-        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         self.tree.header().setStretchLastSection(False)
-        self.tree.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        self.tree.itemSelectionChanged.connect(self._selected)
+        for number, mode in enumerate((QHeaderView.ResizeMode.Stretch, QHeaderView.ResizeMode.ResizeToContents)):
+            self.tree.header().setSectionResizeMode(number, mode)
         self.why = wrapped()
         self.again = button(tr("Run again from here…"), self.run_wanted.emit, tr(
             "Opens Road map with the settings of this run and the corrections; what is kept of the steps before is not made again"))
-        self.alone = button(tr("This step alone…"), self._run_alone, tr("Opens the algorithm of this step with what its run was given"))
+        self.alone = button(tr("This step alone…"), lambda: self.stage_wanted.emit(*stage_again(self.chosen.layer, QgsProject.instance())),
+                            tr("Opens the algorithm of this step with what its run was given"))
         column(self, self.of, (self.tree, 1), self.why, row(self.again, self.alone))
 
     def show_map(self, road_map: RoadMap | None, corrections: QgsVectorLayer | None) -> None:
@@ -168,6 +168,3 @@ class StepsPanel(QWidget):
         self.again.setEnabled(step is not None)
         self.alone.setEnabled(step is not None and stage_again(step.layer, QgsProject.instance()) is not None)
         self.why.setText("" if step is None else step.reason)
-
-    def _run_alone(self):
-        self.stage_wanted.emit(*stage_again(self.chosen.layer, QgsProject.instance()))

@@ -295,8 +295,9 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     result_points = result_points[judged]
     nearest = nearest[judged]
     reference_points, excluded_points = sample_lines(reference_lines).inside(area), sample_lines(excluded_lines).inside(area)
+    # excluded lines are stationed along the judged reference beside them
     stations = [along.of_result(result_points, nearest), along.of_reference(reference_points),
-                _of_excluded(along, excluded_points, reference_index)]
+                along.of_result(excluded_points, reference_index.nearest(excluded_points.xy))]
     progress.report(0.6)
     keys, intervals = _intervals(stations, settings.interval)
     groups = [_LineGroup(*group) for group in zip((result_lines, reference_lines, excluded_lines), (result_owner, reference_owner, excluded_owner),
@@ -307,13 +308,6 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     beyond = float(result_points.length[groups[0].interval < 0].sum())
     by_side, total = _summary(table, groups[0], nearest, signed, settings)
     return BoundaryAccuracy(by_side, total, table, beyond, settings, along, groups[0], groups[1], groups[2], signed)
-
-
-def _of_excluded(along, points, segments):
-    """Stations of excluded lines, along the judged reference beside them."""
-    if isinstance(along, TrajectoryStationing):
-        return along.of_reference(points)
-    return along.of_result(points, segments.nearest(points.xy))
 
 
 def _intervals(placed, step):
@@ -415,9 +409,7 @@ def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tup
     """
     table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
     outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))
-    drawn = _by_interval(accuracy.reference_group)
-    excluded = _by_interval(accuracy.excluded_group)
-    result = _by_interval(accuracy.result_group)
+    drawn, excluded, result = map(_by_interval, (accuracy.reference_group, accuracy.excluded_group, accuracy.result_group))
     for row in range(len(table.unit)):
         shape = excluded.get(row, []) + drawn.get(row, []) if outcome[row] == "excluded" else drawn.get(row, [])
         if outcome[row] and shape:

@@ -392,9 +392,6 @@ def _long_side(shape):
 
 # What was read of a map from elsewhere, as layers like ours.
 
-STATUS_OF_MAPS = "measured"
-
-
 def add_marking_line(layer: Features, points: np.ndarray, road: int, kind: str, pattern: str, width: float = np.nan) -> None:
     """Add a painted border, (N, 3) map coordinates, to the layer MARKING_LINES."""
     _add_line(layer, points, road=road, line=len(layer) + 1, kind=kind, pattern=pattern, width_m=width)
@@ -407,7 +404,7 @@ def add_edge(layer: Features, points: np.ndarray, road: int, edge: str = "curb",
 
 def _add_line(layer, points, **values):
     length = plan_length(points)
-    layer.add(shapely.linestrings(points), status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length, **values)
+    layer.add(shapely.linestrings(points), status="measured", station_m=0.0, end_m=length, length_m=length, **values)
 
 
 def plan_length(points: np.ndarray) -> float:

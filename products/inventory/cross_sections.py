@@ -433,7 +433,6 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
 # Cross-sections as a layer of lines, one for every lane and carriageway, and as a table.
 
 LINE_TOLERANCE = 0.003   # m of height to which the drawn profile is simplified
-MIN_SECTION_VERTICES = 2
 
 
 def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
@@ -493,7 +492,7 @@ def _line(section, part, frame):
     inside = finite & (section.d > part.strip.right) & (section.d < part.strip.left)
     d = np.r_[part.strip.right, section.d[inside], part.strip.left]
     z = np.interp(d, section.d[finite], section.z[finite])
-    if len(d) > MIN_SECTION_VERTICES:
+    if len(d) > 2:
         d, z = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.c_[d, z]), LINE_TOLERANCE)).T
     places = frame.to_map(section.road, np.full(len(d), section.station), d, z)
     return shapely.linestrings(np.stack(places, axis=1)[::-1])

@@ -24,7 +24,7 @@ SPREAD_SAMPLE = 400       # cells whose scatter tells the noise of a pass and sc
 
 
 @dataclass(frozen=True)
-class SurfaceGrid:
+class _SurfaceGrid:
     """Heights of a stretch of road in I slices along it and J cells across it, of G groups (pass and scanner)."""
 
     road: int   # number
@@ -52,7 +52,7 @@ class SurfaceGrid:
         return self.base + self.slope * (np.asarray(s) - self.start)
 
 
-def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
+def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> _SurfaceGrid:
     """Read a stretch of a road from a station (m) on, in so many slices of SLICE_LENGTH, between (right, left) offsets (m)."""
     end = start + slices * SLICE_LENGTH
     base, last = survey.road_height(road, np.array([start, end])).tolist()
@@ -93,7 +93,7 @@ def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: 
         deviations = deviation[(group_number == g) & rich]
         # mean absolute deviation of a normal distribution: sigma * sqrt(2 / pi), a median's own n costs one degree of freedom
         sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(deviations, ROAD_LAYER_JUMP).mean()) if len(deviations) else 0.0
-    return SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
+    return _SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
 
 
 def _slope_within(cell, ahead, h):
@@ -164,7 +164,7 @@ class HeightErrors:
         return np.interp(s, self.windows, self.step[row]) + np.interp(s, self.windows, self.tilt[row]) * across
 
 
-def overlaps_of(grid: SurfaceGrid, window: int) -> list[Overlap]:
+def overlaps_of(grid: _SurfaceGrid, window: int) -> list[Overlap]:
     """Steps and differences in tilt between the groups of a grid."""
     overlaps = []
     station = float(grid.s.mean())
@@ -254,7 +254,7 @@ def _prior(G, W, S):
     return sparse.block_diag([*parts, sparse.identity(S) / BORESIGHT_PRIOR**2])
 
 
-def joined_heights(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
+def joined_heights(grid: _SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
     """(I, J) heights without the errors of their groups, m above the line of the grid, and their sigmas, m; NaN where nothing was seen."""
     weight = np.zeros(grid.height.shape[1:])
     total = np.zeros_like(weight)

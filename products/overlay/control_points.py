@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...core.common.errors import RoadExtractionError
-from ...core.io.crs import NO_PLACE, in_metres, place_of_raster
+from ...core.io.crs import NO_PLACE, in_metres, parse_crs, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.io.text_table import as_number
 from ...core.lazy import gdal
@@ -327,8 +327,6 @@ def _delimiter(lines):
 
 def _wkt(named, path):
     """WKT of the CRS that a file names, "" where it names none."""
-    from ...core.io.crs import parse_crs
-
     if not named:
         return ""
     # OpenDroneMap writes "WGS84 UTM 32N" for what EPSG calls "WGS 84 / UTM zone 32N"

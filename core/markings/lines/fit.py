@@ -121,12 +121,7 @@ class _DrawnLine:
 
 
 def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
-    """The phase that fits lines and draws their pieces; parameters as of `_shapes_of_lines`."""
-    return [shape.drawn(course.pieces) for shape, course in zip(_shapes_of_lines(courses, curve, degree), courses)]
-
-
-def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
-    """The shapes of some lines, with a curve of the wanted kind, where they can take it.
+    """The phase that fits lines, with a curve of the wanted kind where they can take it, and draws their pieces.
 
     curve, degree : as of MarkingLineSettings
     """
@@ -139,15 +134,16 @@ def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> lis
     for k, t, guided in zip(curved, along, fit_splines([(courses[k].x, courses[k].y) for k in curved], along)):
         fits[k], guesses[k] = guided, guided.curve.u_of(t)
     heights = smooth_profiles([(course.s[course.own], course.z) for course in courses], STRANDS.line_height_smoothing)
-    shapes = []
+    drawn = []
     for course, fit, guess, of_kind, height in zip(courses, fits, guesses, wanted, heights):
         u, e = fit.curve.project(course.x, course.y, guess)
         if guess is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
-        shapes.append(_LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height))
-    return shapes
+        shape = _LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height)
+        drawn.append(shape.drawn(course.pieces))
+    return drawn
 
 
 @dataclass(frozen=True)
@@ -178,7 +174,7 @@ def _courses(selected, places, road, track_height):
 
 def _places(line, trend, edges, span):
     """(N,) stations and offsets of a line, beyond its paint, too, whether they are its own, and the heights of those."""
-    s, d, z, weight = line.places()
+    s, d, z, weight = line.places
     strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
@@ -263,7 +259,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     curbs, pavement = EdgeSections.of(edges)
     estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
                                paint=paint, pavement=pavement, progress=progress, taken=taken)
-    kinds, second = _line_kinds(estimates), _second_kinds(estimates)
+    kinds, second = _kinds_of_lines(estimates)
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
     kind = np.array([kinds.get(number, drawn_kind) for number, drawn_kind in zip(lines.line.tolist(), drawn)], object)
@@ -284,27 +280,16 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     same_road = markings.road[rows[marking]] == lines.course.road[line]
     kind = markings.kind.copy()
     kind[rows[marking][same_road]] = lines.kind[line[same_road]]
-    return with_paint_between_tracks(markings.with_kinds(kind), lines)
+    return with_paint_between_tracks(replace(markings, kind=kind), lines)
 
 
-def _line_kinds(estimates):
-    """{number of a marking line: edge, lane or centre}, by what most of it separates; lines that bound no lane are not in it."""
-    votes: dict[int, np.ndarray] = {}
-    for road in estimates.roads.values():
-        c, uses = road.estimate.candidates, boundary_uses(road.estimate)
-        for i, m in zip(*np.nonzero((uses >= 0) & np.isin(uses, list(KINDS)))):
-            for row in set(c.rows[i, m].tolist()) - {-1}:
-                if not road.boundaries.painted[row]:
-                    continue
-                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
-                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    votes.setdefault(int(number), np.zeros(len(KINDS)))[uses[i, m]] += count
-    return {number: KINDS[int(np.argmax(counts))] for number, counts in votes.items()}
+def _kinds_of_lines(estimates):
+    """{number of a marking line: edge, lane or centre}, by what most of it separates, and {number: its second kind as JSON}.
 
-
-def _second_kinds(estimates):
-    """{number of a marking line: its second kind as JSON}, of lines that are almost as probable to separate something else along most of them."""
-    behind: dict[int, list[tuple[float, np.ndarray]]] = {}
+    Lines that bound no lane are in neither, and in the second are those alone that are almost as probable to separate something else along most
+    of them.
+    """
+    parts: dict[int, list[tuple[float, int, np.ndarray]]] = {}
     for road in estimates.roads.values():
         c, estimate = road.estimate.candidates, road.estimate
         uses, kinds = boundary_uses(estimate), separated_kinds(estimate.sections)
@@ -315,16 +300,17 @@ def _second_kinds(estimates):
             for row in set(c.rows[i, m].tolist()) - {-1}:
                 numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
                 for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    behind.setdefault(int(number), []).append((float(count), gaps))
-    result, doubt = {}, EstimateWeights().doubt
-    for number, parts in behind.items():
-        count, gaps = (np.array(values) for values in zip(*parts))
+                    parts.setdefault(int(number), []).append((float(count), int(uses[i, m]), gaps))
+    first, second, doubt = {}, {}, EstimateWeights().doubt
+    for number, of_line in parts.items():
+        count, use, gaps = (np.array(values) for values in zip(*of_line))
+        first[number] = KINDS[int(np.bincount(use, count).argmax())]
         share = (count[:, None] * (gaps < doubt)).sum(axis=0) / count.sum()
-        second = int(np.argmax(share))
-        if share[second] > 0.5:
-            close = gaps[:, second][gaps[:, second] < doubt]
-            result[number] = json.dumps({"nats": round(max(float(np.median(close)), 0.0), 2), "kind": list(KINDS.values())[second]})
-    return result
+        likely = int(np.argmax(share))
+        if share[likely] > 0.5:
+            close = gaps[:, likely][gaps[:, likely] < doubt]
+            second[number] = json.dumps({"nats": round(max(float(np.median(close)), 0.0), 2), "kind": list(KINDS.values())[likely]})
+    return first, second
 
 
 LINES_SHARE = 0.65   # derived: of the work, half of it to link lines; the rest is the estimate that names the lines

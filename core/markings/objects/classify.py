@@ -104,7 +104,11 @@ def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, 
         return NOT_PAINT
     if block:
         return "give_way"
-    return _line_kind(shape, clearance, double) if line else _other_kind(shape)
+    if not line:
+        return _other_kind(shape)
+    if clearance < CLASSES.lane_clearance and not double:
+        return "edge"
+    return "centre" if double or shape.length > CLASSES.min_solid_length else "lane"
 
 
 def columns_of(shapes: Sequence[Shape]) -> dict[str, np.ndarray]:
@@ -186,12 +190,6 @@ def _single_bars(column, kinds):
             gap = np.maximum(gap, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
         single[a[(a != b) & (gap < CLASSES.max_hatching_pitch)]] = False
     return rows[single]
-
-
-def _line_kind(shape, clearance, double):
-    if clearance < CLASSES.lane_clearance and not double:
-        return "edge"
-    return "centre" if double or shape.length > CLASSES.min_solid_length else "lane"
 
 
 def _speck(shape):

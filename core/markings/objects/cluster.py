@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +30,6 @@ from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import (
     Comb,
-    Crossing,
     Stripe,
     blocks_of_strip,
     comb_of_window,
@@ -118,9 +118,10 @@ def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSe
     places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
     del cells, station
     spots, windows = spots_by_place(places)
-    crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.35)))
+    crossings = crossings_of(spots, windows, (yield asked(combs_of_windows, partial(_at, (places,)), windows, 0.35)))
     del spots, windows
-    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 0.45)))
+    stripes = stripes_apart(places, way, crossings, (yield asked(
+        _zebra_stripes, partial(_at, (places, way)), [members for members, _ in crossings], 0.45, [comb for _, comb in crossings])))
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
@@ -131,13 +132,17 @@ def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSe
     split, pieces = yield from _divided(paint, _with_rows_divided(paint, labels))
     joins = join_fragments(pieces, settings.classes.max_width)
     order, starts, _ = _by_cluster(split, 1)
-    again, starts, labels = _by_cluster(_relabelled(len(paint), starts, joins), settings.min_points)
+    # points of no cluster get labels of their own
+    labels = np.r_[np.repeat(joins, np.diff(starts)), len(joins) + np.arange(len(paint) - starts[-1])]
+    again, starts, labels = _by_cluster(labels, settings.min_points)
     order = rows[order[again]]
     clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-    unjoined = _alone(pieces, joins)
+    count = np.bincount(joins, minlength=1)
+    unjoined = {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
     # clusters that were joined, then stripes
     measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
-    shapes = iter((yield shapes_asked(records, [*measured, *(of_stripe for _, of_stripe in striped)], 1.0)))
+    measured += [of_stripe for _, of_stripe in striped]
+    shapes = iter((yield asked(shapes_of_clusters, partial(_columns_at, records, MEASURED), measured, 1.0)))
     of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
     return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
 
@@ -147,15 +152,15 @@ def _divided(paint, labels):
     order = order_by(labels)
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     columns = tuple(paint[name].take(order) for name in MEASURED)
-    bounds = np.r_[starts, len(order)]
-    divided = yield pieces_asked(columns, bounds, are_compound(*columns[:2], starts), 0.9)
+    clusters = [np.arange(*ends) for ends in zip(starts, np.append(starts[1:], len(order)))]
+    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 0.9, are_compound(*columns[:2], starts).tolist())
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     alone, of_parts = [], []
-    for first, end, (parts, shapes) in zip(bounds[:-1].tolist(), bounds[1:].tolist(), divided):
+    for rows, (parts, shapes) in zip(clusters, divided):
         if parts is None:
             alone += shapes
         else:
-            labels[order[first:end]] = following + parts
+            labels[order[rows]] = following + parts
             following += len(shapes)
             of_parts += shapes
     return labels, alone + of_parts
@@ -194,10 +199,8 @@ def _rectangle(records, bounds):
 
 def _with_rows_divided(records, labels):
     """Labels of clusters, rows of the blocks of give-way lines divided into these."""
-    if not len(labels):
-        return labels
     order = order_by(labels)
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
+    starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     along, across = ((np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE
                      for values in (records[name].take(order) for name in "sd"))
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
@@ -244,7 +247,10 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    outlines = iter((yield _outlines_asked(pieces.paint, [marking for marking in markings if marking.outline is None], number, roads)))
+    undrawn = [marking for marking in markings if marking.outline is None]
+    outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
+                                 [marking.rows for marking in undrawn], 1.0,
+                                 [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
     drawn = [next(outlines) if marking.outline is None
              else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
     return markings, drawn, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
@@ -284,25 +290,11 @@ def _cells_together(records, bounds, members):
     return cells, reach
 
 
-def _alone(pieces, joins):
-    """The pieces that were joined to no other, by the number of their marking."""
-    count = np.bincount(joins, minlength=1)
-    return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
-
-
-def _relabelled(count, starts, number):
-    """Label of each of so many records after joining; records of no cluster get labels of their own."""
-    labels = np.repeat(number, np.diff(starts))
-    return np.r_[labels, len(number) + np.arange(count - len(labels))]
-
-
 def _by_cluster(labels, fewest):
     """Points of clusters large enough, one cluster after the other; those of the rest at the end.
 
     Returns their order, the bounds of the clusters in it (one more than there are clusters), and the label of each.
     """
-    if not len(labels):
-        return np.empty(0, np.intp), np.zeros(1, np.int64), np.empty(0, np.int32)
     labels = labels.astype(np.int32, copy=False)
     large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)
@@ -367,10 +359,9 @@ def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np
 
 def _pieces_of_cluster(s, d, spacing, divisible):
     """What `pieces_of_clusters` gives of one."""
-    parts, count = parts_of_compound(s, d, spacing) if divisible else (None, 1)
-    if count == 1:
+    parts = parts_of_compound(s, d, spacing) if divisible else None
+    if parts is None or not parts.any():
         return None, [measure(s, d, spacing)]
-    _, parts = np.unique(parts, return_inverse=True)
     return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
 
 
@@ -399,48 +390,21 @@ def _clusters(item):
         yield [column[first:end] for column in columns]
 
 
-def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float) -> Asked:
-    """Asks for the Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
-    rows = np.concatenate([np.empty(0, np.int32), *windows])
-    return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until)
+def asked(function: Callable[..., Any], columns: Callable[[np.ndarray], tuple[Any, ...]], rows: Sequence[np.ndarray], until: float,
+          looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (), read: Callable[[Any], list[Any]] = list) -> Asked:
+    """Asks a phase about clusters, some in each item.
 
-
-def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
-    """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
-    rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
-    return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
-                  [comb for _, comb in crossings])
-
-
-def pieces_asked(columns: Sequence[np.ndarray], bounds: np.ndarray, compound: np.ndarray, until: float) -> Asked:
-    """Asks for what `pieces_of_clusters` gives of each cluster; bounds : of the clusters in the columns MEASURED."""
-    return _asked(pieces_of_clusters, lambda a, b: tuple(column[a:b] for column in columns), bounds, until, compound.tolist())
-
-
-def shapes_asked(records: Columns, rows: Sequence[np.ndarray], until: float) -> Asked:
-    """Asks for the Shape of each cluster; rows : in the records, of each."""
-    together = np.concatenate([np.empty(0, np.intp), *rows])
-    return _asked(shapes_of_clusters, lambda a, b: _columns_at(records, together[a:b], MEASURED), np.cumsum([0, *map(len, rows)]), until)
-
-
-def _outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
-    """Asks for [Polygon] of each marking, of `drawn_outline`, on the road of that number among all."""
-    together = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)])
-    return _asked(outlines_of_markings, lambda a, b: (number, *_columns_at(paint, together[a:b], DRAWN)),
-                  np.cumsum([0, *(len(marking.rows) for marking in markings)]), 1.0,
-                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in markings], (list(roads),), _polygons)
-
-
-def _asked(function: Callable[..., Any], columns: Callable[[int, int], tuple[Any, ...]], bounds: np.ndarray, until: float,
-           looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (), read: Callable[[Any], list[Any]] = list) -> Asked:
-    """Asks a phase about clusters, some in each item; `columns` gives those of the points, cluster after cluster, from a row to before another."""
+    columns : gives those that the phase takes of points at some rows; rows : of the points of each cluster
+    looks : what else the phase takes of each cluster; until, arguments, read : as of Asked
+    """
+    together, bounds = np.concatenate([np.empty(0, np.intp), *rows]), np.cumsum([0, *map(len, rows)])
     cuts = _lasting_cuts(bounds, TASK_POINTS).tolist()
 
     def item(k):
         a, b = cuts[k:k + 2]
-        return *columns(bounds[a], bounds[b]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
+        return *columns(together[bounds[a]:bounds[b]]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-    return Asked(function, Items(len(cuts) - 1 if len(bounds) > 1 else 0, item), until, arguments, read)
+    return Asked(function, Items(len(cuts) - 1, item), until, arguments, read)
 
 
 def _lasting_cuts(bounds, points):
@@ -455,8 +419,12 @@ def _lasting_cuts(bounds, points):
     return np.unique(np.r_[0, np.flatnonzero(mixed * float(points) < size[1:] * 2.0**32) + 1, len(bounds) - 1])
 
 
-def _columns_at(records, rows, names):
-    """Some columns of some rows."""
+def _at(columns, rows):
+    return tuple(column[rows] for column in columns)
+
+
+def _columns_at(records, names, rows):
+    """Some columns of some rows, which are read for it."""
     selected = records.take(rows)
     return tuple(selected[name] for name in names)
 

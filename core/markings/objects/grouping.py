@@ -75,15 +75,6 @@ def _windows_together(marking_points, road):
     return zip(begins, begins[1:])
 
 
-def _points_to_link(store, road, distance, first, end):
-    """LINKING_COLUMNS of the points between two cells along the road, and of those beyond that they may reach."""
-    reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
-    records = store.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
-    column = records["s"] // CELL_UNITS
-    records = records[(column >= first) & (column < end + reach)]
-    return [records[name] for name in LINKING_COLUMNS]
-
-
 def links_of_windows(store: SectionStore, item: tuple[int, int, int], distance: float, size: int) -> list[tuple[np.ndarray, ...]]:
     """The phase that links the points of windows of so many cells, (road, first, last + 1 of their numbers), by `distance`, m.
 
@@ -92,11 +83,16 @@ def links_of_windows(store: SectionStore, item: tuple[int, int, int], distance: 
     """
     links: list[tuple[np.ndarray, ...]] = []
     road, *windows = item
+    reach = int(np.ceil(distance * GROUPS.reach_along_factor / (CELL_UNITS * COORDINATE_SCALE))) + 1
     for number in range(*windows):
-        end = (number + 1) * size
-        columns = _points_to_link(store, road, distance, number * size, end)
-        cells, member, component = _components_of_points(dict(zip(LINKING_COLUMNS, columns)), distance)
-        links.append((cells, component, cells[:, 0] >= end, member[columns[0] // CELL_UNITS < end]))
+        first, end = number * size, (number + 1) * size
+        records = store.window(road, *(row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, end + reach + 1))).records
+        column = records["s"] // CELL_UNITS
+        # with those beyond the end that they may reach
+        records = records[(column >= first) & (column < end + reach)]
+        columns = {name: records[name] for name in LINKING_COLUMNS}
+        cells, member, component = _components_of_points(columns, distance)
+        links.append((cells, component, cells[:, 0] >= end, member[columns["s"] // CELL_UNITS < end]))
     return links
 
 
@@ -126,9 +122,7 @@ def _across_tracks(places, reach, at_rim):
     edge of the road, where it is the curb that is bright: the next track may show an edge line.
     """
     rows = np.flatnonzero(reach)
-    if not len(rows):
-        return np.empty((0, 2), np.int64)
-    widest = reach[rows].max()
+    widest = reach[rows].max(initial=0.0)
     pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
     along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
     reachable = along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0

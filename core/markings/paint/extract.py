@@ -148,8 +148,8 @@ class ScannerScatter:
         if windows == filled:
             return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
                            "found.")
-        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners, and paint is searched for there "
-                       "in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not found there.")
+        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
+                       "averages, as elongated pieces and rows of dashes; other markings are not found.")
 
 
 def scatter_of_windows(road_points: RoadPoints,

@@ -18,17 +18,17 @@ import numpy as np
 from ...common.arrays import mask_runs, stretch_of
 from ...survey.frame.road import Road
 from ..weights import CURBS
-from .tracking import is_lowered, line_across, without_outliers
+from .tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
 
 if TYPE_CHECKING:
-    from ..surface.road_look import SideLook
+    from ..surface.road_look import RoadLook
 
 
-def lowered_points(rows: list[dict], road: Road, look: SideLook) -> list[dict]:
+def lowered_points(rows: list[dict], road: Road, look: RoadLook) -> list[dict]:
     """Places of lowered curb between the curb points of one side of a road.
 
-    rows : of the curb points, dicts as of `SideChains.points`
-    look : SideLook of the side
+    rows : of the curb points, dicts as of `points_of_rows`
+    look : RoadLook of the side
 
     Returns a list of dict like `rows`, one for each row of ground cells that shows the step
     """
@@ -54,10 +54,12 @@ def _line_across(near, before, behind, road, look):
     k = int(np.searchsorted(near["s"], before, side="right")) - 1
     if not 0 <= k < len(near) - 1 or behind - before > CURBS.max_hidden_gap:
         return None
-    turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k)
-    if line is None or turn > CURBS.max_lowered_turn:
+    # of less curb the direction is not known, and a bend through a single place may lead anywhere
+    bends = min(near["s"][k] - near["s"][0], near["s"][-1] - near["s"][k + 1]) >= CURBS.min_bend_length
+    turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k, 1 + bends)
+    if line is None or turn > (CURBS.max_lowered_turn if bends else IN_LINE_TURN):
         return None
-    stations, offsets = line.between(look.row_size)
+    stations, offsets = line.between(look.cells.row_size)
     if axes == "xy":
         stations, offsets = road.locate(stations, offsets)
         offsets = look.sign * offsets
@@ -71,7 +73,7 @@ def _seen_between(near, look, first, last, offsets):
     near : curb points about them
     offsets : function from stations to outward offsets, m, of the line on which the ground is looked at
     """
-    s = look.row_size * (np.arange(np.floor(first / look.row_size), np.ceil(last / look.row_size)) + 0.5)
+    s = look.cells.row_size * (np.arange(np.floor(first / look.cells.row_size), np.ceil(last / look.cells.row_size)) + 0.5)
     s = s[(s > first) & (s < last)]
     u = offsets(s)
     lowered, height, bottom = look.steps_up(s, u, near["height"].max())

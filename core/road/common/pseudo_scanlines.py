@@ -137,40 +137,17 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
     """
     cells = max(int(np.ceil((reach - origin) / spacing)), 1)
     inside, place = cells_of_points(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
-    run = ground_of_profiles((u, s, h, along), inside, place, profiles, cells, layer_jump)
-    return join_profile_runs([run], profiles, width, spacing, origin)
+    return profiles_of_cells(tuple(v.take(inside) for v in (u, s, h, along)), place, profiles, cells, width, spacing, layer_jump, origin)
 
 
-@dataclass
-class _ProfileRun:
-    """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:"""
+def profiles_of_cells(points: Sequence[np.ndarray], place: np.ndarray, profiles: tuple[int, int], cells: int, width: float, spacing: float,
+                      layer_jump: float, origin: float) -> PseudoScanLines:
+    """The profiles of points of which the cell is known, and the ground in each of their cells.
 
-    profiles: tuple[int, int]   # (first, last + 1)
-    point: np.ndarray
-    u: np.ndarray
-    s: np.ndarray
-    along: np.ndarray
-    h: np.ndarray
-    ground: np.ndarray
-    count: np.ndarray   # (P, C) points of every cell
-    low: np.ndarray
-    high: np.ndarray
-    noise: np.ndarray
-    smooth: np.ndarray   # (P,) m, spread of heights near the ground in the smoother cells, NaN where there are too few of them
-
-
-def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: np.ndarray, profiles: tuple[int, int],
-                       cells: int, layer_jump: float) -> _ProfileRun:
-    """The ground of profiles, cell by cell.
-
-    points : (u, s, h, along), each (K,) m
-    inside, place : (N,) indices of the points within the profiles and cells, and their cells (`cells_of_points`)
-    profiles : (first, last + 1)
-    cells : number of cells of a profile
-    layer_jump : m of height between two layers
+    points : (u, s, h, along), each (N,) m
+    place : (N,) cells of the points (`cells_of_points`), `cells` of them a profile
     """
-    rows = profiles[1] - profiles[0]
-    u, s, h, along = (v.take(inside) for v in points)
+    rows, (u, s, h, along) = profiles[1] - profiles[0], points
     height = h + CURBS.ground_depth
     height *= 1e4
     order = order_by(np.rint(height, out=height).astype(np.int32), place)
@@ -183,25 +160,9 @@ def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: 
     low.flat[owner], high.flat[owner] = middle, top
     dense = np.flatnonzero(count >= CURBS.profile_noise_points)
     noise = _profile_noise(owner.take(dense) // cells, (top.take(dense) - middle.take(dense)) / TOP_QUANTILE_SIGMAS, rows)
-    points_per_cell = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return _ProfileRun(profiles, order, u, s, along, h, ground, points_per_cell, low, high, noise, _smooth(h, points_per_cell, low))
-
-
-def join_profile_runs(runs: Sequence[_ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
-                      origin: float) -> PseudoScanLines:
-    """PseudoScanLines of profiles (first, last + 1) from runs that follow one another; profiles of no run are empty."""
-    rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
-    low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
-    points_per_cell = np.zeros((rows, cells), np.int64)
-    noise, smooth = np.full(rows, CURBS.default_scanner_noise), np.full(rows, np.nan)
-    for run in runs:
-        of_run = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
-        low[of_run], high[of_run], points_per_cell[of_run], noise[of_run], smooth[of_run] = run.low, run.high, run.count, run.noise, run.smooth
-    u, s, along, h, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "along", "h", "ground"))
-    before = np.cumsum([0] + [len(run.point) for run in runs[:-1]])
-    point = np.concatenate([run.point + first for run, first in zip(runs, before)])
-    return PseudoScanLines(profiles[0], width, spacing, origin, point, u, s, along, h, ground, np.r_[0, np.cumsum(points_per_cell)], low, high, noise,
-                           _spread(smooth))
+    held = np.bincount(place, minlength=rows * cells)
+    return PseudoScanLines(profiles[0], width, spacing, origin, order, u, s, along, h, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+                           _spread(_smooth(h, held, low)))
 
 
 def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarray, profiles: tuple[int, int], cells: int,
@@ -239,8 +200,7 @@ def _profile_noise(profile, spread, count):
 
 def _smooth(h, held, low):
     """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where there are too few."""
-    rows, cells = low.shape
-    held, low = held.ravel(), low.ravel()
+    (rows, cells), low = low.shape, low.ravel()
     crowded = np.flatnonzero(held >= CURBS.min_spread_points)
     if not len(crowded):
         return np.full(rows, np.nan)

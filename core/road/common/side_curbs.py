@@ -15,14 +15,14 @@ from ...survey.frame.road_frame import RoadFrame
 from ..weights import CURBS
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
-from .curb_points import CurbPoints, curb_points_at
+from .curb_points import CurbPoints
 from .lowered_curb import lowered_points
 from .occlusion import OcclusionGrid
-from .sides import SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, hidden_points, join_sections
+from .sides import SIDE_SIGNS, OutermostTrack, fixed_sections, hidden_points, join_sections, points_of_rows
 from .tracking import StepChain, curb_chains, drop_short_curbs, is_road, link_steps, select_along_road, with_pieces_in_line
 
 if TYPE_CHECKING:
-    from ..surface.road_look import RoadLook, SideLook
+    from ..surface.road_look import RoadLook
 
 AnySteps = TypeVar("AnySteps", bound=CurbSteps)
 Section = tuple[str, int, int, int]   # method, number of a road, first and last + 1 number of its profiles or planes
@@ -126,6 +126,17 @@ class SideSteps:
     bounds: np.ndarray
     occlusion: OcclusionGrid
 
+    def chains(self, look: RoadLook | None) -> list[StepChain]:
+        """The chains of the steps, upright and sloped ones apart. `look` : RoadLook of the side, None where nothing is known of the ground."""
+        steps = self.steps
+        if steps is None or not len(steps):
+            return []
+        label, upright = np.empty(len(steps), np.int64), steps.upright
+        label[upright] = link_steps(steps[upright], self.width)
+        label[~upright] = link_steps(steps[~upright], self.width) + label[upright].max(initial=-1) + 1
+        return [chain for chain in curb_chains(steps, label, self.width, self.limits)
+                if look is None or _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
+
 
 def grids_beside(steps: Mapping[tuple[int, str], SideSteps]) -> dict[int, dict[str, OcclusionGrid]]:
     """What was seen beside each road: number of the road -> side -> OcclusionGrid."""
@@ -159,59 +170,32 @@ def _curbs_of_side(source: Any, item: tuple[int, str, Mapping[str, SideSteps]], 
     """
     (road, side, methods), survey = item, getattr(source, "survey", source)
     beside = looks[road].side(SIDE_SIGNS[side]) if road in looks else None
-    chains = {method: SideChains.of(seen.steps, seen, beside) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
+    linked = {method: (seen, seen.chains(beside)) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
     # scanlines may have been told how high the scanner is
-    points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion)
-              for method, of_method in chains.items()}
-    if chains and len(methods) > 1:
-        points["both"] = points_of_side(survey, road, side, list(chains.values()), methods["profiles"].occlusion)
+    points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion, beside)
+              for method, of_method in linked.items()}
+    if linked and len(methods) > 1:
+        points["both"] = points_of_side(survey, road, side, list(linked.values()), methods["profiles"].occlusion, beside)
     return points
 
 
-@dataclass(frozen=True)
-class SideChains:
-    """The chains of one side of one road.
+def _points_of_line(steps, bounds, number):
+    """Curb points of the steps of one line, by station: one of each part per block, between (K,) bounds.
 
-    steps : CurbSteps of the side
-    chains : list of StepChain of these steps
-    bounds : (K,) m, stations at which blocks begin and end
-    look : SideLook of the side, None where nothing is known of the ground
+    Returns a list of dict: s, u, h in m, and `fields`, what else is known of it, with the number of the line
     """
-
-    steps: CurbSteps
-    chains: list[StepChain]
-    bounds: np.ndarray
-    look: SideLook | None = None
-
-    @staticmethod
-    def of(steps: CurbSteps, seen: SideSteps, look: SideLook | None = None) -> SideChains:
-        """The chains of the steps of a SideSteps, upright and sloped ones apart."""
-        label, upright = np.empty(len(steps), np.int64), steps.upright
-        label[upright] = link_steps(steps[upright], seen.width)
-        label[~upright] = link_steps(steps[~upright], seen.width) + label[upright].max(initial=-1) + 1
-        chains = curb_chains(steps, label, seen.width, seen.limits)
-        if look is not None:
-            chains = [chain for chain in chains if _has_road_before(steps[chain.steps], chain.end - chain.start, look)]
-        return SideChains(steps, chains, seen.bounds, look)
-
-    def points(self, members: np.ndarray, number: int) -> list[dict]:
-        """Curb points of the steps with the (K,) indices, by station, of one line: one of each part per block.
-
-        Returns a list of dict: s, u, h in m, and `fields`, what else is known of it, with the number of the line
-        """
-        steps = self.steps[members]
-        if not len(steps):
-            return []
-        blocks, member = np.unique(_block_numbers(steps, self.bounds), return_inverse=True)
-        n = np.bincount(member)
-        names = {"s", "u", "height", *(name for _, *coordinates in steps.PARTS for name in coordinates)}
-        mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
-        residual = np.sqrt(np.bincount(member, (steps.u - np.interp(steps.s, mean["s"], mean["u"])) ** 2) / n)
-        support = np.bincount(member, steps.support)
-        return [dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]),
-                     fields=dict(status="measured", height=round(float(mean["height"][k]), 4), chain=number, part=part,
-                                 residual=round(float(residual[k]), 4), support=int(support[k])))
-                for k in range(len(blocks)) for part, u, h in steps.PARTS]
+    if not len(steps):
+        return []
+    blocks, member = np.unique(_block_numbers(steps, bounds), return_inverse=True)
+    n = np.bincount(member)
+    names = {"s", "u", "height", *(name for _, *coordinates in steps.PARTS for name in coordinates)}
+    mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
+    residual = np.sqrt(np.bincount(member, (steps.u - np.interp(steps.s, mean["s"], mean["u"])) ** 2) / n)
+    support = np.bincount(member, steps.support)
+    return [dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]),
+                 fields=dict(status="measured", height=round(float(mean["height"][k]), 4), chain=number, part=part,
+                             residual=round(float(residual[k]), 4), support=int(support[k])))
+            for k in range(len(blocks)) for part, u, h in steps.PARTS]
 
 
 def _has_road_before(steps, length, look):
@@ -220,38 +204,32 @@ def _has_road_before(steps, length, look):
     return length >= CURBS.min_faint_length or is_road(look.roughness(*(v.ravel() for v in np.broadcast_arrays(steps.s, steps.u - before))))
 
 
-def points_of_side(source: Any, road: int, side: str, by_method: Sequence[SideChains], occlusion: OcclusionGrid) -> CurbPoints:
+def points_of_side(source: Any, road: int, side: str, by_method: Sequence[tuple[SideSteps, list[StepChain]]], occlusion: OcclusionGrid,
+                   look: RoadLook | None = None) -> CurbPoints:
     """Curb points of one side of one road, measured and hidden, in order of station.
 
     source : Survey, or scanlines: what has `frame` and `road_height`
-    by_method : SideChains of every method
+    by_method : SideSteps of every method, and their chains
+    look : RoadLook of the side, None where nothing is known of the ground
     """
-    frame, sign = source.frame, SIDE_SIGNS[side]
-    first = np.cumsum([0, *(len(part.steps) for part in by_method)])   # number of the first step of each method among all of them
-    steps = CurbSteps(*(np.concatenate([getattr(part.steps, field.name) for part in by_method]) for field in fields(CurbSteps)))
+    frame, sign, seen = source.frame, SIDE_SIGNS[side], [of_method.steps for of_method, _ in by_method]
+    first = np.cumsum([0, *map(len, seen)])   # number of the first step of each method among all of them
+    steps = CurbSteps(*(np.concatenate([getattr(part, field.name) for part in seen]) for field in fields(CurbSteps)))
     chains = [replace(chain, steps=chain.steps + begin, method=method)
-              for method, (part, begin) in enumerate(zip(by_method, first)) for chain in part.chains]
+              for method, ((_, of_method), begin) in enumerate(zip(by_method, first)) for chain in of_method]
     chains.sort(key=lambda chain: (chain.start, chain.end))
     track = OutermostTrack(frame, road, sign)
-    selected = drop_short_curbs(select_along_road(chains, steps, track, by_method[0].look), chains, steps)
+    selected = drop_short_curbs(select_along_road(chains, steps, track, look), chains, steps)
     lines = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u), first[1:-1].tolist())
     rows = []
     for number, members in enumerate(lines):
         method = int(np.searchsorted(first, members[0], side="right")) - 1
-        rows += by_method[method].points(members - first[method], number)
-    if by_method[0].look is not None:
-        rows += lowered_points(rows, frame.road(road), by_method[0].look)
+        rows += _points_of_line(seen[method][members - first[method]], by_method[method][0].bounds, number)
+    if look is not None:
+        rows += lowered_points(rows, frame.road(road), look)
     bottoms = np.array([(row["s"], row["u"], row["h"]) for row in rows if row["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += hidden_points(bottoms, occlusion, track)
     return points_of_rows(source, road, side, sorted(rows, key=lambda row: (row["s"], row["fields"]["part"])))
-
-
-def points_of_rows(source: Any, road: int, side: str, rows: Sequence[dict], crs: str = "") -> CurbPoints:
-    """CurbPoints from dicts of s, u, h in m and `fields`, as of `SideChains.points`; `source` as of `points_of_side`."""
-    s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
-    d = SIDE_SIGNS[side] * u
-    places = source.frame.to_map(road, s, d, h + expected_height(source, road, s))
-    return curb_points_at(source.frame, road, places, [row["fields"] for row in rows], crs, side=side, station=s, offset=d)
 
 
 def block_bounds(road: Road, start: float, end: float, block_length: float) -> np.ndarray:

@@ -15,7 +15,7 @@ from .curb_limits import CurbSettings
 from .curb_points import CurbPoints, curb_points_at
 from .decimation import PointDecimation, limit_points_per_cell
 from .occlusion import OcclusionGrid
-from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, ground_of_profiles, join_profile_runs
+from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, profiles_of_cells
 
 SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 
@@ -81,7 +81,8 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
     survey, width, spacing = decimation.survey, decimation.width, decimation.spacing
     stations = (np.arange(*section) + 0.5) * width
     origins = {side: np.floor(tracks[side](stations).min()) for side in SIDE_SIGNS}
-    runs: dict = {}
+    cells = {side: max(int(np.ceil((CURBS.max_curb_offset - origins[side]) / spacing)), 1) for side in SIDE_SIGNS}
+    ground: dict = {}
     tall: dict = {}
     for block in decimation.decimated_points(road, section, points_per_cell):
         s, d = block.s, block.d
@@ -90,22 +91,19 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
         along = ahead_of_vehicle(survey, block, s)
         near = np.abs(along) < CURBS.max_look_along + np.abs(d)
         h = block.z - expected_height(survey, road, s)
-        first = int(np.floor(s[0] / width))
-        profiles = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
         for side, sign in SIDE_SIGNS.items():
             u = sign * d
-            cells = max(int(np.ceil((CURBS.max_curb_offset - origins[side]) / spacing)), 1)
             for number, rows in _rows_by_pass(block.pass_number, near & (u > origins[side]) & (u < CURBS.max_curb_offset)):
-                key = side, number
-                inside, cell = cells_of_points(u, s, h, rows, profiles, cells, width, spacing, origins[side])
+                inside, cell = cells_of_points(u, s, h, rows, section, cells[side], width, spacing, origins[side])
                 if points_per_cell is None:
                     selected = limit_points_per_cell(cell)
                     inside, cell = inside[selected], cell[selected]
-                runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), inside, cell, profiles, cells, settings.layer_jump))
+                ground.setdefault((side, number), []).append([*(v.take(inside) for v in (u, s, h, along)), cell])
                 high = rows[h.take(rows) > CURBS.min_occluder_height]
-                tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
-    for side, number in sorted(runs, key=lambda key: (list(SIDE_SIGNS).index(key[0]), key[1])):
-        lines = join_profile_runs(runs[side, number], section, width, spacing, origins[side])
+                tall.setdefault((side, number), []).append([v.take(high) for v in (u, s, h)])
+    for side, number in sorted(ground, key=lambda key: (list(SIDE_SIGNS).index(key[0]), key[1])):
+        *points, cell = (np.concatenate(column) for column in zip(*ground[side, number]))
+        lines = profiles_of_cells(points, cell, section, cells[side], width, spacing, settings.layer_jump, origins[side])
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
 
 
@@ -215,7 +213,13 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
             if (order[k - 1:k + 1] < len(later)).any() \
                     and np.abs(reported[position - 1:position + 1] - row["s"]).min() > 0.5 * CURBS.hidden_point_spacing:
                 rows.append(row)
-        s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
-        places = survey.frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
-        result.append(curb_points_at(survey.frame, road, places, [row["fields"] for row in rows], side=side, station=s, offset=sign * u))
+        result.append(points_of_rows(survey, road, side, rows))
     return CurbPoints.join(result, pieces.crs)
+
+
+def points_of_rows(source: Any, road: int, side: str, rows: Sequence[dict], crs: str = "") -> CurbPoints:
+    """CurbPoints from dicts of s, u, h in m and `fields`, as of `hidden_points`; `source` : what has `frame` and `road_height`."""
+    s, u, h = (np.array([row[name] for row in rows], float) for name in ("s", "u", "h"))
+    d = SIDE_SIGNS[side] * u
+    places = source.frame.to_map(road, s, d, h + expected_height(source, road, s))
+    return curb_points_at(source.frame, road, places, [row["fields"] for row in rows], crs, side=side, station=s, offset=d)

@@ -26,7 +26,7 @@ from .curb_limits import CurbLimits
 from .pseudo_scanlines import expand_ranges
 
 if TYPE_CHECKING:
-    from ..surface.road_look import SideLook
+    from ..surface.road_look import RoadLook
 
 IN_LINE_TURN = CURBS.in_line_across / CURBS.line_fit_length   # rad at most; by more across shorter gaps
 
@@ -207,13 +207,13 @@ def _wander(steps, members):
 
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],
-                      look: SideLook | None = None) -> list[tuple[int, float, float]]:
+                      look: RoadLook | None = None) -> list[tuple[int, float, float]]:
     """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
     near : function, station in m -> outward offset of the outermost track on that side, m
-    look : SideLook of the side, None where nothing is known of the ground
+    look : RoadLook of the side, None where nothing is known of the ground
 
     Returns a list of (chain index, first station, last station), in order along the road
     """
@@ -573,11 +573,12 @@ class GapLine:
         return v - self.line(t)
 
 
-def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLine | None, str]:
+def line_across(points: np.ndarray, s: np.ndarray, k: int, max_degree: int = 2) -> tuple[float, GapLine | None, str]:
     """The even bend that leads best across a gap, which begins at point k, on the map or as seen from the road.
 
     points : (N,) structured array of curb points, by station, with the fields x, y, s and d in m
     s : (N,) m, their stations
+    max_degree : 1 of a straight line, 2 of an even bend
 
     Returns
         turn : radians that the curb on both sides turns off it
@@ -597,7 +598,7 @@ def line_across(points: np.ndarray, s: np.ndarray, k: int) -> tuple[float, GapLi
             break
         for axes in ("xy", "sd"):
             before, behind = (np.array([part[axis] for axis in axes]) for part in parts)
-            line = GapLine(before, behind, max_degree=2)
+            line = GapLine(before, behind, max_degree)
             best = min(best, (line.miss / reach, line, axes), key=lambda fitted: fitted[0])
     return best
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
-from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ...survey.frame.passes import Pass
@@ -99,14 +98,14 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     mains = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in mains.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in mains]
-    main_ends, lines = CurbLines([(x, y) for _, (x, y, _) in runs]), _LinesOfSteps([steps[chain.steps] for chain in chains])
+    main_ends, linked = CurbLines([(x, y) for _, (x, y, _) in runs]), PlanSteps.join([PlanSteps.none(), *(steps[chain.steps] for chain in chains)])
     result, separate = list(mains.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
             result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], main_ends)
         else:
-            curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, lines)
+            curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
     return result + _free_and_islands(separate, result, runs, elsewhere)
 
@@ -120,14 +119,17 @@ def _sides_continued(runs, chains, steps):
     return ["" if chain.closed else sides.get(number, "") for number, chain in zip(group[len(runs):], chains)]
 
 
-def _curb_apart(curb, falls, closed, line, limits, passes, lines):
-    """A line that continues no main curb, as an island, as a side street whose corner is hidden, or else as a corner or of no kind."""
+def _curb_apart(curb, falls, closed, line, limits, passes, linked):
+    """A line that continues no main curb, as an island, as a side street whose corner is hidden, or else as a corner or of no kind.
+
+    linked : PlanSteps of all lines that continue none
+    """
     s, d = line.locate(curb.x, curb.y)
     behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
     side = _side(s, d, passes)
     if np.mean(np.isfinite(falls) & ~behind) >= RETURN.min_island_share:
         return CurbReturn(curb, s, d, side, "island", closed, falls=falls)
-    if _may_be_side_street(curb, s, line, behind, lines):
+    if _may_be_side_street(curb, s, line, behind, linked):
         straight = _straight_part(curb)
         return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")
     return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
@@ -160,10 +162,10 @@ def _side(s, d, passes):
     return "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
 
 
-def _may_be_side_street(curb, s, line, behind, lines):
+def _may_be_side_street(curb, s, line, behind, linked):
     """Is a line that nothing joins to the main curb the curb of a side street?"""
     return _length(curb.x, curb.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
-        and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, lines)
+        and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, linked)
 
 
 def _straight_part(curb):
@@ -196,29 +198,13 @@ def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: s
     return [CurbReturn(curb[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
-class _LinesOfSteps:
-    """Lines of PlanSteps, among which those near a place are looked up."""
-
-    def __init__(self, lines):
-        self.lines = lines
-        self.owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-        self.tree = cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[line.x, line.y] for line in lines)]))
-
-    def about(self, x, y, distance):
-        """Those with steps within a distance of a place."""
-        return [self.lines[k] for k in np.unique(self.owner[self.tree.query_ball_point((x, y), distance)])]
-
-
-def _has_opposite_curb(curb, lines):
-    """Is there another line along the opposite side of the street that this one bounds?"""
+def _has_opposite_curb(curb, steps):
+    """Do any of the steps of all lines lie along the opposite side of the street that this one bounds?"""
     k = len(curb) // 2
-    for line in lines.about(curb.x[k], curb.y[k], RETURN.side_street_widths[1] + RETURN.max_opposite_shift):
-        dx, dy = line.x - curb.x[k], line.y - curb.y[k]
-        out, shift = -(dx * curb.nx[k] + dy * curb.ny[k]), np.abs(dx * curb.ny[k] - dy * curb.nx[k])
-        opposite = line.nx * curb.nx[k] + line.ny * curb.ny[k] < -0.7
-        if np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (shift < RETURN.max_opposite_shift) & opposite):
-            return True
-    return False
+    dx, dy = steps.x - curb.x[k], steps.y - curb.y[k]
+    out, shift = -(dx * curb.nx[k] + dy * curb.ny[k]), np.abs(dx * curb.ny[k] - dy * curb.nx[k])
+    opposite = steps.nx * curb.nx[k] + steps.ny * curb.ny[k] < -0.7
+    return bool(np.any((out > RETURN.side_street_widths[0]) & (out < RETURN.side_street_widths[1]) & (shift < RETURN.max_opposite_shift) & opposite))
 
 
 def _road_cosine(curb, s, line):
@@ -251,16 +237,10 @@ def _long_islands(lines):
     """Lines about islands that are long enough, together with those nearby."""
     if not lines:
         return []
-    trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
-    box = np.array([(*tree.mins, *tree.maxes) for tree in trees])
-    boxes, around = shapely.STRtree(shapely.box(*box.T)), shapely.box(*(box + np.array([-1, -1, 1, 1]) * RETURN.max_island_gap).T)
-    long = []
-    for k, line in enumerate(lines):
-        near = [j for j in np.sort(boxes.query(around[k])).tolist() if j == k or trees[k].count_neighbors(trees[j], RETURN.max_island_gap)]
-        if length[near].sum() >= RETURN.min_island_length:
-            long.append(line)
-    return long
+    places = [shapely.MultiPoint(np.c_[line.steps.x, line.steps.y]) for line in lines]
+    line, near = shapely.STRtree(places).query(places, predicate="dwithin", distance=RETURN.max_island_gap)
+    return [lines[k] for k in np.flatnonzero(np.bincount(line, length[near]) >= RETURN.min_island_length)]
 
 
 # What lies behind a curb is no island: a sidewalk between two ramps is raised on both sides as an island is.

@@ -16,6 +16,7 @@ from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
 from .steps import PlanSteps
+from .tracking import LineEnds
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -179,7 +180,8 @@ class CurbLines:
     @cached_property
     def ends(self) -> np.ndarray:
         """(2 L, 4) x, y and the direction out of the line of both ends of every line; its last metre gives the direction."""
-        return np.array([_end(x, y, index) for x, y in self.lines for index in (0, -1)]).reshape(-1, 4)
+        ends = LineEnds.of([(x, y, np.zeros(len(x))) for x, y in self.lines], 1.0)
+        return np.concatenate([ends.heads, ends.tails])[:, [0, 1, 3, 4]]
 
     @cached_property
     def _tips(self):
@@ -203,13 +205,3 @@ class CurbLines:
         result = np.full(len(x), np.inf)
         result[row] = distance
         return result
-
-
-def _end(x, y, at):
-    """x, y and the direction out of the line at its first (0) or last (-1) place."""
-    order = 1 if at == 0 else -1
-    distance = np.hypot(x - x[at], y - y[at])[::order]
-    k = int(np.argmax(distance >= 1.0)) or len(x) - 1
-    back = np.array([x[::order][k], y[::order][k]])
-    out = np.array([x[at], y[at]]) - back
-    return x[at], y[at], *(out / max(np.hypot(*out), 1e-9))

@@ -146,19 +146,14 @@ class LineEnds:
 
         Returns (K,) indices, -1 where there is none
         """
-        count = len(self.heads)
-        if not count:
-            return np.full(count, -1)
-        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), RETURN.max_straight_gap, output_type="ndarray")
-        a, b, gap = near["i"], near["j"], near["v"]
-        tail, head = self.tails[a], self.heads[b]
-        dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
-        turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
+        if not len(self.heads):
+            return np.empty(0, np.int64)
+        a, b, gap, tail, head, (dx, dy), turn = self._gaps(RETURN.max_straight_gap)
         miss = np.maximum(*(np.abs(dx * end[:, 4] - dy * end[:, 3]) for end in (tail, head)))
-        good = long[a] & long[b] & (a != b) & (dx * tail[:, 3] + dy * tail[:, 4] > 0) & (turn <= RETURN.max_straight_turn) \
+        good = long[a] & long[b] & (dx * tail[:, 3] + dy * tail[:, 4] > 0) & (turn <= RETURN.max_straight_turn) \
             & (miss <= RETURN.straight_tolerance + RETURN.straight_drift * gap) \
             & (np.abs(head[:, 2] - tail[:, 2]) <= CURBS.height_tolerance + RETURN.straight_grade * gap)
-        return _mutual(a[good], b[good], (gap + 10 * miss)[good], count)
+        return _mutual(a[good], b[good], (gap + 10 * miss)[good], len(self.heads))
 
     def successors(self, nose: float = 0.0, overlap: float = RETURN.max_join_overlap) -> np.ndarray:
         """The line whose head continues the tail of each line.
@@ -168,26 +163,31 @@ class LineEnds:
 
         Returns (K,) indices, -1 where no line continues
         """
-        count = len(self.heads)
-        following = np.full(count, -1)
-        if not count:
-            return following
-        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), CURBS.max_joined_gap, output_type="ndarray")
-        a, b, gap = near["i"], near["j"], near["v"]
-        tail, head = self.tails[a], self.heads[b]
-        dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
+        if not len(self.heads):
+            return np.empty(0, np.int64)
+        a, b, gap, tail, head, (dx, dy), turn = self._gaps(CURBS.max_joined_gap)
         # the direction in which the one ends and the other begins
         tx, ty = tail[:, 3] - head[:, 3], tail[:, 4] - head[:, 4]
         size = np.maximum(np.hypot(tx, ty), 1e-9)
-        turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
         bends_uphill = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
         max_turn = RETURN.max_join_turn + np.where(bends_uphill & (gap <= nose), gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= max_turn) \
+        good = (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= max_turn) \
             & (up <= CURBS.height_tolerance + RETURN.max_height_grade * gap)
-        return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], count)
+        return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], len(self.heads))
+
+    def _gaps(self, distance):
+        """The P gaps of at most so many metres from the tail of one line to the head of another.
+
+        Returns (P,) both lines and m between them, (P, 5) both ends, x and y that the gap leads, and radians that the head turns off the tail
+        """
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), distance, output_type="ndarray")
+        near = near[near["i"] != near["j"]]
+        tail, head = self.tails[near["i"]], self.heads[near["j"]]
+        turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
+        return near["i"], near["j"], near["v"], tail, head, (head - tail)[:, :2].T, turn
 
 
 def _mutual(a, b, cost, count):

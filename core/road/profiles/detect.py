@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
 from typing import Any
@@ -122,34 +121,23 @@ def find_principal_points(survey: Survey, settings: CurbSettings, progress: Prog
     Returns Features PRINCIPAL_POINTS: PointZ at the middle of the cell, in map coordinates; `height_m` is
     the height above the expected road
     """
-    features = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
-    roads = survey.store.roads()
-    for i, road in enumerate(roads):
-        part = progress.part(i / len(roads), (i + 1) / len(roads))
-        for pass_number, side, s, u, h in _points_of_road(survey, road, settings, part):
-            d = SIDE_SIGNS[side] * u
-            x, y, z = survey.frame.to_map(road, s, d, h + expected_height(survey, road, s))
-            features.geometries += list(shapely.points(np.c_[x, y, z]))
-            features.rows += [
-                {"road": road, "pass": pass_number, "side": side, "station_m": station, "offset_m": offset, "height_m": height}
-                for station, offset, height in zip(s.tolist(), d.tolist(), h.tolist())
-            ]
-    return features
-
-
-def _points_of_road(survey: Survey, road: int, settings: CurbSettings,
-                    progress: Progress) -> Iterator[tuple[int, str, np.ndarray, np.ndarray, np.ndarray]]:
-    """(pass, side, stations, outward offsets, heights) of one section and side after the other."""
-    tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
-
-    def work(section):
+    def work(item):
+        road, section = item
+        tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
         parts = []
         for side, number, _, lines in side_profiles(decimation, road, section, tracks, settings):
             profile, cell = np.nonzero(np.isfinite(lines.high))
-            stations = (lines.first + profile + 0.5) * lines.width
-            parts.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
+            s, d, h = (lines.first + profile + 0.5) * lines.width, SIDE_SIGNS[side] * lines.offset(cell), lines.high[profile, cell]
+            rows = [{"road": road, "pass": number, "side": side, "station_m": station, "offset_m": offset, "height_m": height}
+                    for station, offset, height in zip(s.tolist(), d.tolist(), h.tolist())]
+            parts.append((shapely.points(np.c_[survey.frame.to_map(road, s, d, h + expected_height(survey, road, s))]), rows))
         return parts
 
+    features = Features("PointZ", list(PRINCIPAL_POINTS), crs=survey.crs)
+    sections = [(road, section) for road in survey.store.roads() for section in work_sections(survey, road, settings.profile_width)]
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        for results in ordered_map(work, work_sections(survey, road, settings.profile_width), progress):
-            yield from results
+        for parts in ordered_map(work, sections, progress):
+            for places, rows in parts:
+                features.geometries += list(places)
+                features.rows += rows
+    return features

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.ndimage import map_coordinates
 
 from ...common.arrays import stretch_of
 from ...common.parallel import by_rows
@@ -95,15 +96,10 @@ def _agreed(changes, blind, cells):
 
 def _rise(height, prior, cells, stations, offsets):
     """Bilinear height of the road above its expected one at stations and offsets."""
-    row = np.clip(stations / cells.row_size - cells.first_row - 0.5, 0, len(height) - 1)
-    column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, height.shape[1] - 1)
-    i, j = np.minimum(row.astype(int), len(height) - 2), np.minimum(column.astype(int), height.shape[1] - 2)
-    first, end = int(i.min()), int(i.max()) + 2
-    grid = height[first:end] - prior[first:end, None]
-    a, b = (row - i)[:, None], (column - j)[None, :]
-    i = i - first
-    return ((1 - a) * ((1 - b) * grid[np.ix_(i, j)] + b * grid[np.ix_(i, j + 1)])
-            + a * ((1 - b) * grid[np.ix_(i + 1, j)] + b * grid[np.ix_(i + 1, j + 1)]))
+    row, column = stations / cells.row_size - cells.first_row - 0.5, offsets / cells.column_size - cells.first_column - 0.5
+    first = max(int(row.min()), 0)
+    part = slice(first, int(row.max()) + 2)
+    return map_coordinates(height[part] - prior[part, None], np.meshgrid(row - first, column, indexing="ij"), order=1, mode="nearest")
 
 
 # The limits of the road from its edges, as offsets at given stations.

@@ -115,8 +115,10 @@ class _LaneletCheck:
         self._tags(way, name, place)
 
     def _tags(self, way, name, place):
-        for text in _way_tags(way):
-            self.findings.add("way tag", name, text, place)
+        for key, value in way.tags.items():
+            is_change = key == "lane_change" or key.startswith("lane_change:")
+            if is_change and value not in YES_OR_NO or key in ("width", "height") and not 0 <= length_of_tag(value) < 1000:
+                self.findings.add("way tag", name, f"{key} is {value!r}.", place)
         kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
         if way.id in self.borders and kind in NO_BORDERS:
             self.findings.add("way type", name, f"It is the border of a lanelet and a {kind}.", place)
@@ -304,25 +306,13 @@ NO_BORDERS = ("stop_line", "traffic_sign", "traffic_light", "light_bulbs", "arro
 VEHICLES = ("bus", "car", "car:electric", "car:combustion", "truck", "motorcycle", "taxi", "emergency")
 KNOWN_PARTICIPANTS = ("vehicle", *(f"vehicle:{kind}" for kind in VEHICLES), "bicycle", "pedestrian", "train")
 # kind of a rule -> roles of which it needs at least one member; tags of which one does as well
-RULES = {
-    "traffic_light": (("refers",), ()), "traffic_sign": (("refers",), ()), "speed_limit": (("refers",), ("sign_type",)),
-    "right_of_way": (("right_of_way", "yield"), ()), "all_way_stop": (("yield",), ()), "crosswalk": (("refers",), ()),
-    "no_stopping_area": (("refers",), ()), "no_parking_area": (("refers",), ()), "detection_area": (("refers",), ()),
-    "road_marking": (("refers",), ()), "speed_bump": (("refers",), ()), "virtual_traffic_light": (("refers",), ()),
-    "bus_stop_area": (("refers",), ()), "roundabout": ((), ()),
-}
+RULES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    **dict.fromkeys(("traffic_light", "traffic_sign", "crosswalk", "no_stopping_area", "no_parking_area", "detection_area", "road_marking",
+                     "speed_bump", "virtual_traffic_light", "bus_stop_area"), (("refers",), ())),
+    "speed_limit": (("refers",), ("sign_type",)), "right_of_way": (("right_of_way", "yield"), ()), "all_way_stop": (("yield",), ()),
+    "roundabout": ((), ())}
 RULE_ROLES = ("refers", "ref_line", "cancels", "cancel_line", "right_of_way", "yield", "light_bulbs", "crosswalk_polygon", "start_line", "end_line",
          "lanelet", "")
-
-
-def _way_tags(way: Way) -> Iterator[str]:
-    """Sentences on tags of a way whose values no reader knows."""
-    for key, value in way.tags.items():
-        if key == "lane_change" or key.startswith("lane_change:"):
-            if value not in YES_OR_NO:
-                yield f"{key} is {value!r}."
-        elif key in ("width", "height") and not 0 <= length_of_tag(value) < 1000:
-            yield f"{key} is {value!r}."
 
 
 def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:

@@ -207,10 +207,6 @@ class SideEdges:
         """(N,) m, offset of the edge of a side."""
         return np.interp(s, self.s, self.left if side > 0 else self.right)
 
-    def middle(self, s: np.ndarray) -> np.ndarray:
-        """(N,) m, offset of the middle between the edges."""
-        return 0.5 * (self.of(1, s) + self.of(-1, s))
-
     def beyond(self, side: int, s: np.ndarray, d: np.ndarray) -> float:
         """m, median distance of (N,) places beyond the edge of a side; NaN where no layer says where it is."""
         return float(np.median(side * (d - self.of(side, s)))) if self.known else np.nan
@@ -350,7 +346,7 @@ def roadside_to_features(roadside: Roadside) -> tuple[Features, Features]:
     for road, poles in roadside.poles.items():
         for pole in poles:
             x, y, z = roadside.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
-            side = 1 if pole.d > float(roadside.edges[road].middle(np.array([pole.s]))[0]) else -1
+            side = 1 if pole.d > 0.5 * float(sum(roadside.edges[road].of(side, np.array([pole.s]))[0] for side in (1, -1))) else -1
             points.add(shapely.Point(x[0], y[0], z[0]), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
                        offset_m=pole.d, edge_m=roadside.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
                        height_m=pole.height, diam_m=pole.diameter)

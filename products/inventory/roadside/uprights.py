@@ -13,7 +13,7 @@ from ....core.common.arrays import Rows, order_by
 from ....core.road.common.pseudo_scanlines import lowest_layers
 from ....core.survey.survey import Survey
 from ....core.survey.weights import READING
-from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
+from ..surface_grid import CROSS_CELL, SLICE_LENGTH, smoothed, surface_grid
 
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
@@ -142,7 +142,10 @@ def _described(at, upright, u, above, everything, first, side):
     du, dh = u - mean_u[upright], above - mean_h[upright]
     batter = np.bincount(upright, du * dh, n) / np.maximum(np.bincount(upright, dh * dh, n), 1e-6)
     i, all_u, all_above, all_ground, all_sight = everything
-    ground = _ground_at(at, middle, i, all_u, all_ground)
+    # of the point next beyond the face of each
+    key = i * 1e4 + all_u
+    order = np.argsort(key, kind="stable")
+    ground = all_ground[order[np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)]]
     behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
     return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
                     np.zeros(n, bool), _rough(upright, u, n))
@@ -182,14 +185,6 @@ def _first_gap(filled, gap):
     levels = filled.shape[1]
     empty = np.stack([~filled[:, lag:levels - gap + lag] for lag in range(gap + 1)]).all(axis=0)
     return np.where(empty.any(axis=1), np.argmax(empty, axis=1), levels)
-
-
-def _ground_at(at, middle, i, u, ground):
-    """(N,) median local z of the ground at the uprights."""
-    key = i * 1e4 + u
-    order = np.argsort(key, kind="stable")
-    index = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
-    return ground[order[index]]
 
 
 def _behind(at, middle, tops, i, u, z, sight):
@@ -578,7 +573,10 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     grid = surface_grid(survey, road, start, slices, (float(np.floor(ends.min() / CROSS_CELL) * CROSS_CELL), float(ends.max())))
     if not len(grid.groups):
         return Uprights.none()
-    profile = smoothed(_mean(grid))
+    # of all passes and scanners together, by their numbers of points
+    count = np.where(np.isfinite(grid.height), grid.count, 0)
+    total, n = (np.nan_to_num(grid.height) * count).sum(axis=0), count.sum(axis=0)
+    profile = smoothed(np.where(n > 0, total / np.maximum(n, 1), np.nan))
     gutters, columns, depth = lowest_along(profile, side * (grid.d - edges[:, None]))
     # a slice of the surface holds several of those along which lines are followed
     times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
@@ -609,11 +607,3 @@ def lowest_along(profile: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.nda
     falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
     gutters = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
     return gutters, j[gutters], (outer - low)[gutters]
-
-
-def _mean(grid: SurfaceGrid) -> np.ndarray:
-    """(I, J) heights of all passes and scanners together, by their numbers of points; NaN where there are none."""
-    count = np.where(np.isfinite(grid.height), grid.count, 0)
-    total = (np.nan_to_num(grid.height) * count).sum(axis=0)
-    n = count.sum(axis=0)
-    return np.where(n > 0, total / np.maximum(n, 1), np.nan)

@@ -297,7 +297,8 @@ class _Round:
         """(x and y of the photo's middle for every column and row of a product, those too far away as (H, W) bool)."""
         key = (shape, side, bounds)
         if self._places is None or self._places[0] != key:
-            across, down = ((_shifts(n, n - side) + side / 2) * self.cell for n in shape[::-1])
+            # shifts of a circular correlation, those beyond the photo's side being negative ones
+            across, down = ((np.where(np.arange(n) > n - side, np.arange(n) - n, np.arange(n)) + side / 2) * self.cell for n in shape[::-1])
             far = (across[None, :] - bounds.x) ** 2 + (-down[:, None] - bounds.y) ** 2 > bounds.reach**2
             self._places = key, (across, -down, far)
         return self._places[1]
@@ -314,12 +315,6 @@ class _Round:
         photo = np.where(paint == 0, 0.0, photo)
         norm = float(np.sqrt((paint * paint).sum() * (photo * photo).sum()))
         return place._replace(score=place.sign * float((paint * photo).sum()) / norm if norm else 0.0)
-
-
-def _shifts(length, most):
-    """Shifts of a circular correlation, those beyond `most` being negative ones."""
-    shifts = np.arange(length)
-    return np.where(shifts > most, shifts - length, shifts)
 
 
 # What is searched: the part of the intensity image where a photo may lie.

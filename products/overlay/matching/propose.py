@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.features import PROPOSED_POINTS, Features
@@ -80,7 +81,9 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
-        if placement is not None and not any(_same(placement, candidate.placement, x, y) for candidate in tried):
+        # most corners tell whether two are the same: those beyond the photo are extrapolated
+        if placement is not None and all(
+                np.median(np.hypot(*placement.metres(x, y, *candidate.placement.pixels(x, y)).T)) >= _SAME for candidate in tried):
             tried.append(_Tried(placement, _corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
     return sorted(tried, key=lambda one: -one.total)
@@ -137,11 +140,6 @@ def _middle_on_map(placement, image):
     slope = polynomial.jacobian(centre[:, 0], centre[:, 1])[0]
     centre_pixel = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))[0]
     return polynomial.centre + np.linalg.solve(slope, np.array([0.5 * image.width, 0.5 * image.height]) - centre_pixel)
-
-
-def _same(one, other, x, y):
-    # of most corners: those beyond the photo are extrapolated
-    return bool(np.median(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T)) < _SAME)
 
 
 def _range(rough, bounds):
@@ -321,11 +319,9 @@ class Proposal:
 
     def features(self) -> Features:
         """Features PROPOSED_POINTS, as "Georeference image" takes them: pairs that are not accepted are switched off."""
-        from shapely import Point
-
         layer = Features("PointZ", PROPOSED_POINTS, crs=self.crs)
         for k in range(len(self)):
-            layer.add(Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
+            layer.add(shapely.Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
                       score=self.score[k], residual=self.residual[k], pixel=self.pixel[k], line=self.line[k], why=self.why[k])
         return layer
 

@@ -8,7 +8,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
-from lanewright.core.road.common.side_curbs import SideChains, points_of_side
+from lanewright.core.road.common.side_curbs import SideSteps, points_of_side
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.detect_boundaries import (
     BoundarySettings,
@@ -70,7 +70,7 @@ def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
 
 
 def seen(*stretches):
-    """SideChains of one method on the left: (from, to, offset, scatter) of chains of 12 cm whose foot lies at the height of the road."""
+    """SideSteps of one method on the left, and their chains of 12 cm with the foot at the height of the road: (from, to, offset, scatter)."""
     s = [np.arange(a, b + 0.01, 0.25) for a, b, *_ in stretches]
     u = np.concatenate([offset + scatter * np.where(np.arange(len(part)) % 2, 1, -1) for part, (_, _, offset, scatter) in zip(s, stretches)])
     ends = np.cumsum([0, *map(len, s)])
@@ -79,7 +79,7 @@ def seen(*stretches):
                       height=0.12 * ones, run=0 * ones, noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones.astype(int),
                       behind=20 * ones.astype(int))
     chains = [StepChain(np.arange(a, b), stretch[0], stretch[1], scatter=stretch[3]) for a, b, stretch in zip(ends[:-1], ends[1:], stretches)]
-    return SideChains(steps, chains, np.arange(0.0, 62.0, 2.0))
+    return SideSteps(steps, 0.25, CurbSettings().limits, np.arange(0.0, 62.0, 2.0), None), chains
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,9 @@ from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
-from lanewright.core.markings.objects.cluster import combs_asked, pieces_asked, shapes_asked
+from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters, shapes_of_clusters
 from lanewright.core.markings.objects.figures import figure_of_cells, figures_of
 from lanewright.core.markings.road_grid import CELL_SIZE
-from lanewright.core.survey.store.columns import Columns
 
 RNG = np.random.default_rng(3)
 
@@ -41,14 +40,17 @@ def asking_all():
     """A work that asks for all, and gives the answers."""
     clusters = [COMPOUND, *STRIPES, *DASHES]
     s, d = np.concatenate(clusters).T.copy()
-    spacing = np.zeros(len(s), np.uint16)
     bounds = np.cumsum([0, *map(len, clusters)])
+    members = [np.arange(*ends) for ends in zip(bounds, bounds[1:])]
+
+    def columns(rows):
+        return s[rows], d[rows], np.zeros(len(rows), np.uint16)
+
     spots = np.unique(np.concatenate(STRIPES + DASHES) // 400, axis=0) * 0.04
     windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
-    combs = yield combs_asked(spots, [rows for rows in windows if len(rows) > 3], 0.2)
-    pieces = yield pieces_asked((s, d, spacing), bounds, np.arange(len(clusters)) < 4, 0.4)
-    records = Columns(dict(s=s, d=d, spacing=spacing), [("s", "i4"), ("d", "i4"), ("spacing", "u2")])
-    shapes = yield shapes_asked(records, [np.arange(*ends) for ends in zip(bounds, bounds[1:])], 0.6)
+    combs = yield asked(combs_of_windows, lambda rows: (spots[rows],), [rows for rows in windows if len(rows) > 3], 0.2)
+    pieces = yield asked(pieces_of_clusters, columns, members, 0.4, [number < 4 for number in range(len(members))])
+    shapes = yield asked(shapes_of_clusters, columns, members, 0.6)
     shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
     figures = yield Asked(figure_of_cells, [(cells, np.zeros(len(cells))) for cells in shown], 1.0, read=lambda kind: [kind])
     return ([comb and (comb.middle.tobytes(), comb.heading, comb.pitch, comb.phase, comb.coherence) for comb in combs],
@@ -102,7 +104,7 @@ def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
     def looking(count):
         spots = np.unique(STRIPES[0] // 400, axis=0) * 0.04
         for _ in range(count):
-            yield combs_asked(spots, [np.arange(len(spots))], 0.5)
+            yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))], 0.5)
         return count
 
     assert in_step([looking(2), looking(0), looking(1)], Noting(1), "a street") == [2, 0, 1]
@@ -111,7 +113,7 @@ def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
 
 def test_where_there_is_no_paint_there_is_nothing_to_do():
     def asking():
-        combs = yield combs_asked(np.empty((0, 2)), [], 0.5)
-        return combs + (yield pieces_asked(np.empty((3, 0), np.int32), np.zeros(1, int), np.zeros(0, bool), 1.0))
+        combs = yield asked(combs_of_windows, lambda rows: (rows,), [], 0.5)
+        return combs + (yield asked(pieces_of_clusters, lambda rows: (rows, rows, rows), [], 1.0, []))
 
     assert in_step([asking()], Threads(1), "a street") == [[]] and in_step([], Threads(1), "a street") == []

@@ -32,8 +32,16 @@ def with_bulb_out(points, depth, stretch=STRETCH):
     return x, y, z, time
 
 
-def edges_of(points, backwards=False):
-    """Pieces of the left edge, seen along the first drive: (from, to, largest distance from the curb's line in m, kind), by station."""
+def turned_away(x):
+    """m by which a curb that bends away from the road before the end of the lowered stretch lies farther out, on an arc of 12 m."""
+    return np.clip(STRETCH[1] - x, 0.0, None)**2 / 24.0
+
+
+def edges_of(points, backwards=False, bend=np.zeros_like):
+    """Pieces of the left edge, seen along the first drive: (from, to, largest distance from the curb's line in m, kind), by station.
+
+    bend : function, m along the road -> m by which the curb lies farther out than OFFSET
+    """
     if backwards:
         x, y, z, time = points
         points = x, y, z, 2000.0 + (LENGTH - np.clip(x, 0, LENGTH)) / 10
@@ -42,7 +50,7 @@ def edges_of(points, backwards=False):
     for line, row in fit_road_edges(detect_curbs(survey), survey.frame):
         x, y = (shapely.get_coordinates(line) - [EAST, NORTH]).T
         if y.mean() > 0 and row["kind"] == "main":
-            pieces.append((float(x.min()), float(x.max()), float(np.abs(y - OFFSET).max()), row["edge"]))
+            pieces.append((float(x.min()), float(x.max()), float(np.abs(y - OFFSET - bend(x)).max()), row["edge"]))
     return sorted(pieces)
 
 
@@ -78,6 +86,13 @@ def test_behind_a_bulb_out_nothing_goes_on_although_the_curb_sinks_beside_it(dep
     pieces = edges_of(with_bulb_out(lowered(street(right=5.0), 0.025, beside), depth))
     assert not any(start < 22.0 < end and off < 0.3 for start, end, off, _ in pieces)
     assert length(pieces, "dropped") > 3.0, "beside the bulb-out the lowered curb goes on"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_around_a_corner_of_which_only_a_metre_is_seen_behind_it_a_lowered_curb_is_not_led_past_its_place(seed):
+    x, y, z, time = lowered(street(open_left=[(-10.0, STRETCH[0] - 1.5)], seed=seed), 0.025)
+    around = x, y + turned_away(x) * np.clip(y / OFFSET, 0.0, 1.0), z, time
+    assert max(off for *_, off, _ in edges_of(around, bend=turned_away)) < 0.1
 
 
 @pytest.mark.parametrize("noise", [0.003, 0.008])
