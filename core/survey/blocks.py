@@ -30,7 +30,7 @@ DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "cla
 
 
 @dataclass
-class BlockSummary:
+class _BlockSummary:
     """What points contribute to the knowledge of the whole cloud."""
 
     census: ScannerCensus = field(default_factory=ScannerCensus)   # of the fields that may distinguish scanners
@@ -39,7 +39,7 @@ class BlockSummary:
     without_time: int = 0   # without_time, excluded: numbers of points at a time of no pass, and of those that are withheld or classified as noise
     excluded: int = 0
 
-    def join(self, other: BlockSummary) -> None:
+    def join(self, other: _BlockSummary) -> None:
         """Add what other points contribute."""
         self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
         self.without_time += other.without_time
@@ -103,11 +103,11 @@ class _ChosenPoints:
     """What the points that are kept say of the survey."""
 
     histogram: HeightHistogram   # histogram, coverage: of those on the vehicle's own track
-    coverage: Coverage
+    coverage: _Coverage
     sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
-class BlockReader:
+class _BlockReader:
     """Turns blocks into compact records in the road frame, chooses those near the road and partitions them by section.
 
     Safe to use in several threads. slots : of the points that are sampled
@@ -124,14 +124,14 @@ class BlockReader:
 
     def chosen(self, drop: float) -> _ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
+        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), _Coverage(self.frame, drop))
 
     def rough_drop(self, blocks: Iterable[Any]) -> float:
         """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
         samples: list[np.ndarray] = []
         looked_at = 0
         for block in blocks:
-            for road, points, near in self._near_roads(block, BlockSummary()):
+            for road, points, near in self._near_roads(block, _BlockSummary()):
                 looked_at += len(points) if near is None else int(np.count_nonzero(near))
                 samples += [drops[::7] for _, _, drops in self.tracks.drops(road, points, near)] if road >= 0 else []
             if sum(map(len, samples)) > READING.height_samples or looked_at > READING.max_waiting_points:
@@ -139,7 +139,7 @@ class BlockReader:
         drops = np.concatenate([np.empty(0, np.int32), *samples])
         return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
-    def read(self, block: Any, summary: BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
+    def read(self, block: Any, summary: _BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
@@ -168,7 +168,7 @@ class BlockReader:
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        summary : BlockSummary, which is updated; ground : _HeightFilter, without which points of any height are taken; chosen : _ChosenPoints, which
+        summary : _BlockSummary, which is updated; ground : _HeightFilter, without which points of any height are taken; chosen : _ChosenPoints, which
         counts those of other heights. Yields road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond
         the corridor the number is that of `beside_road`, and stations are the vehicle's.
         """
@@ -181,7 +181,7 @@ class BlockReader:
     def _piece(self, piece, names, axes, summary, ground, chosen):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
-        summary.join(BlockSummary(darkest=int(columns["intensity"].min()), brightest=int(columns["intensity"].max())))
+        summary.join(_BlockSummary(darkest=int(columns["intensity"].min()), brightest=int(columns["intensity"].max())))
         usable = self._usable(piece, axes, columns, summary, buffers)
         columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
@@ -417,7 +417,7 @@ def _road_height(counts, origin):
     return round(float(origin + (first + np.searchsorted(near, (near[-1] + 1) // 2)) * READING.height_resolution), 3)
 
 
-class Coverage:
+class _Coverage:
     """Counts of the points on the vehicle's own track, by pass, cell of station and depth below the trajectory.
 
     They do not depend on the order of adding. about : m, first estimate of the height of the trajectory above the road
@@ -524,11 +524,11 @@ class _PointsRead:
     """Points in a section store, and what they say of the whole survey."""
 
     store: SectionStore
-    summary: BlockSummary   # of all points
+    summary: _BlockSummary   # of all points
     slots: TimeSlots   # of the points by which scanners are distinguished that no field distinguishes
     sampled: list[tuple[np.ndarray, np.ndarray]]   # their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
     heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
-    moved: str   # moved, holes: as of `Coverage.warnings`
+    moved: str   # moved, holes: as of `_Coverage.warnings`
     holes: str
 
 
@@ -536,7 +536,7 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
                 progress: Progress) -> _PointsRead:
     """Read all files into a store as a phase, `block` points at a time, after a look at the first of them."""
     slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
-    blocks, summary, sampled = BlockReader(frame, choice, slots), BlockSummary(), []
+    blocks, summary, sampled = _BlockReader(frame, choice, slots), _BlockSummary(), []
     with ParallelCloudReader(choice.layers) as readers:
         ranges = list(readers.ranges(files, block))
         drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
@@ -562,9 +562,9 @@ class _PartOfFiles:
     """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
 
     index: StoreIndex
-    summary: BlockSummary
+    summary: _BlockSummary
     drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
-    coverage: list[CountedCells]   # of its Coverage
+    coverage: list[CountedCells]   # of its _Coverage
     times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
@@ -576,7 +576,7 @@ class _PartsOfFiles:
     ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
     """
 
-    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: BlockReader, drop: float, ranges: np.ndarray, block: int):
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: np.ndarray, block: int):
         self.files, self.store, self.reader = files, store, reader
         self.ground = _HeightFilter(reader.frame, drop, reader.choice.above_road)
         self.drop, self.ranges, self.block = drop, ranges, block
@@ -610,13 +610,13 @@ def _parts_of_files(columns: list[list[str]], section_length: float, folder: str
                     drop: float, **others: Any) -> _PartsOfFiles:
     """What `_PartsOfFiles.recipe` describes."""
     store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
-    reader = BlockReader(frame, choice, slots)
+    reader = _BlockReader(frame, choice, slots)
     return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
     """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
-    chosen, summary = source.reader.chosen(source.drop), BlockSummary()
+    chosen, summary = source.reader.chosen(source.drop), _BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
             for points in source.clouds.points(source.files[number], first, count, source.block):
@@ -630,7 +630,7 @@ def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
-    summary = BlockSummary()
+    summary = _BlockSummary()
     drops: dict[int, np.ndarray] = {}
     for part in parts:
         summary.join(part.summary)
