@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -92,8 +91,11 @@ class Survey:
 
     def put_in_order(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
         """Put the points in order, in a folder that the executor's workers see, as they see that of the store."""
-        finishing = None if self.store.finish is None else self.finishing
-        _UnorderedPoints(self.store, finishing, folder).put_in_order(executor, self.stretch, progress)
+        source = _UnorderedPoints(self.store, None if self.store.finish is None else self.finishing, folder)
+        length = self.store.section_length
+        phase = Phase(_order_sections, source, (), lambda item: self.stretch(item[0], item[1] * length, item[2] * length))
+        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
+        self.store.take_over(StoreIndex.join(parts), folder)
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -141,13 +143,6 @@ class _UnorderedPoints:
         """How other processes open the points."""
         store = Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.store.folder), **self.store.contents()))
         return Recipe("core.survey.survey:_UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder)))
-
-    def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
-        """Put all points in order; the store has them from the folder, from then on. place : names the stretch of a road between two stations (m)"""
-        length = self.store.section_length
-        phase = Phase(_order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length))
-        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
-        self.store.take_over(StoreIndex.join(parts), self.folder)
 
 
 def _order_sections(source: _UnorderedPoints, item: Stretch) -> StoreIndex:

@@ -314,9 +314,8 @@ def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> st
     named = [f"{start:.0f} to {end:.0f} m (" + (
                  f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
                  else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
-    more = _further(places)
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: lines may be doubled there. Adjust the trajectories to "
-            "each other, or process each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{_further(places)}: lines may be doubled there. Adjust the "
+            "trajectories to each other, or process each drive by itself.")
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:

@@ -33,13 +33,7 @@ class _DrivenPath:
 def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
     """(M,) indices of (N,) positions at least `step` metres of driving apart, with the first and the last."""
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    if driven[-1] < step:
-        return np.unique([0, len(x) - 1])
-    cell = np.floor(driven / step)
-    keep = np.flatnonzero(np.r_[True, np.diff(cell) > 0])
-    if keep[-1] != len(x) - 1:
-        keep = np.r_[keep, len(x) - 1]
-    return keep
+    return np.union1d(np.flatnonzero(np.r_[True, np.diff(np.floor(driven / step)) > 0]), [len(x) - 1])
 
 
 def moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_radius) -> np.ndarray:

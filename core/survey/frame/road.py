@@ -6,6 +6,7 @@ are interpolated between nodes. The station of a point is where the normal of th
 
 from __future__ import annotations
 
+import itertools
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +16,6 @@ from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ..weights import FRAME
-from .passes import moving_rows
 
 
 class Road:
@@ -140,11 +140,6 @@ class Road:
 NODE_SPACING = 0.1     # derived: m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
 
 
-def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """(M, 3) positions at least half a metre apart along a track of (N,) x, y and z in metres."""
-    return np.c_[x, y, z][moving_rows(x, y)]
-
-
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended at both ends.
 
@@ -192,15 +187,12 @@ def _extend(x, y):
 def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
     """A line lengthened by a track that continues it at either end, driven in either direction; None if it does not.
 
-    Both are (N, 3) positions of `track_line`; the result has the direction of `line`.
+    Both are (N, 3) positions at least half a metre apart; the result has the direction of `line`.
     """
-    for way in (track, track[::-1]):
-        longer = _append_track(line, way)
+    for way, direction in itertools.product((track, track[::-1]), (1, -1)):
+        longer = _append_track(line[::direction], way)
         if longer is not None:
-            return longer
-        longer = _append_track(line[::-1], way)
-        if longer is not None:
-            return longer[::-1]
+            return longer[::direction]
     return None
 
 

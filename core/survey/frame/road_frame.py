@@ -16,7 +16,7 @@ from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from ..weights import FRAME
 from .passes import MAX_ROAD_LENGTH, Pass, decimate_by_distance, moving_rows, split_into_passes
-from .road import Road, continue_line, reference_nodes, track_line
+from .road import Road, continue_line, reference_nodes
 from .row_table import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest corridor and the extension at the ends of a road
@@ -158,7 +158,8 @@ def _line_of(track, turning, rows):
     straight = np.flatnonzero(~turning[rows[0]:rows[1]])
     if len(straight) > 1:
         rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
-    return track_line(*track[rows[0]:rows[1]].T)
+    track = track[rows[0]:rows[1]]
+    return track[moving_rows(*track[:, :2].T)]
 
 
 def _grow_road(number, track, turning, moved, driven, waiting):
