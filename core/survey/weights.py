@@ -172,7 +172,6 @@ class LAS:
     points_per_sample: int = 1000   # points looked at in each of these places
     points_per_block: int = 400_000   # points decoded at a time
     points_per_range: int = 50_000   # points of which it is noted where they lie: those that LASzip compresses together
-    place_cell: float = 10.0   # m: cells by which it is noted: some lengths of road that 50,000 points cover
     remembered_points: int = 6_000_000   # points of the places looked at last, 14 bytes each: of some hundred metres of a road
     remembered_surveys: int = 8   # surveys of which it is remembered where their points lie
     max_header_scale: float = 1e3   # m per stored integer: a coarser scale describes no place on earth
