@@ -95,8 +95,7 @@ def _kept_survey(work, executor, read, progress):
     states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
     name = f"survey-{digest((code_digest(), states, trajectory, settings))}"
     try:
-        earlier = _found_survey(work, name, files, progress)
-        if earlier is not None:
+        if earlier := _found_survey(work, name, files, progress):
             return earlier
         listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
@@ -109,10 +108,9 @@ def _kept_survey(work, executor, read, progress):
             survey = read_survey(*read, listener, shared)
         except RoadExtractionError:
             # another run, which was quicker, has removed the parts
-            earlier = _found_survey(work, name, files, progress)
-            if earlier is None:
-                raise
-            return earlier
+            if earlier := _found_survey(work, name, files, progress):
+                return earlier
+            raise
         work.finish(name, survey.folder, listener.messages)
         parts.discard()
         return survey
@@ -503,14 +501,12 @@ def _look_ahead(survey):
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
     # most of the time goes into putting the points of these sections in order
-    parts = [part for of_section in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in of_section]
-    ahead, speed = zip(*parts) if parts else ([np.empty(0)], [np.empty(0)])
-    return np.concatenate(ahead), np.concatenate(speed)
+    return np.concatenate([np.empty((2, 0)), *ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled)], axis=1)
 
 
 def _look_ahead_in_section(survey, key):
-    """The same of one section, by pass: list of (ahead, speed)."""
-    points, parts = survey.section(*key), []
+    """The same of one section, (2, N)."""
+    points, parts = survey.section(*key), [np.empty((2, 0))]
     if len(points) > READING.clock_points_per_section:
         points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
     s, d, time, owner = points.s, points.d, points.time, points.pass_number
@@ -519,5 +515,5 @@ def _look_ahead_in_section(survey, key):
         on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
         rows = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
         now, soon = (p.station_at(time[rows] + wait) for wait in (0.0, 0.5))
-        parts.append((p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)))
-    return parts
+        parts.append(np.stack([p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)]))
+    return np.concatenate(parts, axis=1)
