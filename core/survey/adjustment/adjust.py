@@ -6,6 +6,7 @@ changes along the road and small corrections as prior. Two passes meet in their 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -309,29 +310,20 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (
-                 f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{_further(places)}: lines may be doubled there. Adjust the "
-            "trajectories to each other, or process each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
+            "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
-            "measure a control point there if these centimetres matter.")
+            "measure a control point there if these centimetres matter.") if places else ""
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    named = (f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named])
-    return ", ".join(named) + _further(places)
-
-
-def _further(places):
-    return f" and at {len(places) - ADJUST.most_named} further places" if len(places) > ADJUST.most_named else ""
+    far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
+    named = (f"{start:.0f} to {end:.0f} m ({far if np.isinf(metres) else size.format(100 * metres)})" for start, end, metres in places)
+    further = len(places) - ADJUST.most_named
+    return ", ".join(itertools.islice(named, ADJUST.most_named)) + (f" and at {further} further places" if further > 0 else "")
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
