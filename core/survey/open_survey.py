@@ -362,7 +362,8 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
         return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    sampled = _sampled_times(files)
+    with ParallelCloudReader(("gps_time",)) as readers:   # a few points of every file that has any, its last ones among them
+        sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
     times = np.concatenate([time for _, time in sampled])
     if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
@@ -402,12 +403,6 @@ def _said_of_times(frame):
     gaps.sort(key=lambda gap: gap[0] - gap[1])
     named = "".join(f", not from {last:.1f} s to {first:.1f} s" for last, first in gaps[:READING.told_stretches])
     return f"from {spans[0][0]:.1f} s to {spans[-1][1]:.1f} s{named}{', …' if len(gaps) > READING.told_stretches else ''}"
-
-
-def _sampled_times(files):
-    """[(path, (N,) gps_time)] of a few points of every file that has any, its last ones among them."""
-    with ParallelCloudReader(("gps_time",)) as readers:
-        return [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
 
 
 def _check_extent(files, frame, crs, trajectory_crs, progress):
