@@ -48,7 +48,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     """
     if len(survey.scanners) < 2 or _agree_at_a_look(survey):
         return 0.0
-    offsets = _scanner_offsets(survey, SCANNER_WINDOWS)
+    offsets = _scanner_offsets(survey)
     if not any(map(_apart, offsets)):
         return 0.0
     moves = _shares(offsets)
@@ -135,10 +135,10 @@ def _moved(frame, moves, records):
         yield p, rows, (ahead * cos - aside * sin, ahead * sin + aside * cos, up)
 
 
-def _scanner_offsets(survey: Any, windows: int = SCANNER_WINDOWS) -> list[_ScannerOffsets]:
-    """How far the scanners of a survey lie beside the first one, from so many windows of road."""
+def _scanner_offsets(survey):
+    """[_ScannerOffsets], how far the scanners of a survey lie beside the first one."""
     by_scanner: dict[int, list] = {}
-    for of_window in ordered_map(partial(_window_evidence, survey), _windows(survey, windows)):
+    for of_window in ordered_map(partial(_window_evidence, survey), _windows(survey, SCANNER_WINDOWS)):
         for number, evidence in of_window.items():
             by_scanner.setdefault(number, []).append(evidence)
     return [_offsets(number, evidence) for number, evidence in sorted(by_scanner.items())]
