@@ -126,11 +126,12 @@ class _BlockReader:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
         return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), _Coverage(self.frame, drop))
 
-    def rough_drop(self, blocks: Iterable[Any]) -> float:
+    def rough_drop(self, blocks: Iterable[Any], progress: Progress) -> float:
         """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
         samples: list[np.ndarray] = []
         looked_at = 0
         for block in blocks:
+            progress.check_cancelled()
             for road, points, near in self._near_roads(block, _BlockSummary()):
                 looked_at += len(points) if near is None else int(np.count_nonzero(near))
                 samples += [drops[::7] for _, _, drops in self.tracks.drops(road, points, near)] if road >= 0 else []
@@ -539,7 +540,7 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
     blocks, summary, sampled = _BlockReader(frame, choice, slots), _BlockSummary(), []
     with ParallelCloudReader(choice.layers) as readers:
         ranges = list(readers.ranges(files, block))
-        drop = blocks.rough_drop(points for number, *part in ranges for points in readers.points(files[number], *part, block))
+        drop = blocks.rough_drop((points for number, *part in ranges for points in readers.points(files[number], *part, block)), progress)
     chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
     phase = Phase(_read_part, source, (), source.place, _join_parts)
     points = block if store.folder is None else READING.part_points   # threads read block by block
