@@ -228,7 +228,7 @@ class READING:
     told_stretches: int = 4   # stretches that a warning names
     track_cell_bits: int = 8   # of a station in units of 0.1 mm: a track is looked up every 26 mm
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
-    max_height_points: int = 4_000_000   # points that are looked at, at most, for the rough height of the road
+    max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known
     height_samples: int = 5_000   # points on the own track from which the rough height is estimated
     max_split_samples: int = 1_500_000   # points sampled, by which two scanners are distinguished
     part_points: int = 1_200_000   # points of a part, about: a second or two of a worker's time, some 20 MB of its file
