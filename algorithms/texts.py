@@ -32,7 +32,7 @@ def speak(language="en"):
     def translated(text):
         return texts.get(text) or text
 
-    set_translation(translated, CoreMessages.load(TRANSLATIONS / f"core_{short}.json", translated).told, short)
+    set_translation(translated, CoreMessages(TRANSLATIONS / f"core_{short}.json", translated).told, short)
     return True
 
 

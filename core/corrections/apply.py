@@ -57,16 +57,15 @@ class LineKind(ABC):
         return self.accepted(piece)
 
 
-def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections: Sequence[Correction]) -> tuple[list[dict[str, Any]], set[int], bool]:
+def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections: Sequence[Correction]) -> tuple[list[dict[str, Any]], set[int]]:
     """Pieces of lines as an analyst corrected them, one correction after the other.
 
     Accepted stretches get the status `accepted`. What is drawn or moved replaces what lies along its new place, has the status `drawn`
     and the heights of the map around it.
 
-    Returns pieces, the rows of the corrections that something was found for, and whether anything changed
+    Returns pieces, and the rows of the corrections that something was found for: without any nothing has changed
     """
     matched: set[int] = set()
-    changed = False
     for correction in corrections:
         reach = max(CORRECTING.moved_from, kind.reach) if correction.action == "move" else kind.reach
         spans = spans_along([piece[kind.key][:, :2] for piece in pieces], correction, reach)
@@ -74,10 +73,10 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
             continue
         matched.add(correction.row)
         like = pieces[spans[0][0]] if spans and correction.action == "move" else None
-        pieces, changed = _replaced(kind, pieces, spans, correction), True
+        pieces = _replaced(kind, pieces, spans, correction)
         if correction.draws:
             pieces.append(kind.drawn(correction, _with_heights(kind, correction), like, pieces))
-    return pieces, matched, changed
+    return pieces, matched
 
 
 def _replaced(kind, pieces, spans, correction):
@@ -236,9 +235,9 @@ def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) 
     columns = {name: np.asarray(getattr(edges, name)).tolist() for name in names}
     rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
     before = [dict(row, road=int(edges.road[k]), local=places[edges.course.line(k)]) for k, row in enumerate(rows)]
-    pieces, matched, changed = apply_corrections(kind, before, edge_corrections)
+    pieces, matched = apply_corrections(kind, before, edge_corrections)
     corrections.matched |= matched
-    if not changed:
+    if not matched:
         return edges
     return joined_pieces([EdgePiece(**{name: value for name, value in piece.items() if name != "local"}, vertices=piece["local"] + frame.origin)
                           for piece in pieces], frame, edges.crs)
@@ -308,6 +307,6 @@ def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Co
     if not line_corrections or lines.fitted is None:
         return lines
     kind = _Lines(frame, np.concatenate([lines.fitted.vertices, known]))
-    pieces, matched, changed = apply_corrections(kind, pieces_of_lines(lines), line_corrections)
+    pieces, matched = apply_corrections(kind, pieces_of_lines(lines), line_corrections)
     corrections.matched |= matched
-    return painted_lines_of(pieces, frame, lines.crs) if changed else lines
+    return painted_lines_of(pieces, frame, lines.crs) if matched else lines

@@ -91,14 +91,14 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
                         for part in (_taken(correction, before, frame) if correction.action == "take" else [correction])]
     corrections.matched |= {correction.row for correction in corrections.of("lane")
                             if correction.action == "take" and correction.on_a_road and not correction.lanes}
-    rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
+    rows, of_lines = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
     # the area of a lane is drawn about its driving line
     lane_corrections = [correction for correction in lane_corrections if not correction.draws or correction.row in of_lines]
-    areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
+    areas, of_lanes = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
     corrections.matched |= of_lines | of_lanes
-    if lines_changed:
+    if of_lines:
         lines, elements = DrivingLines.of_pieces(rows, lines.crs), _remaining(elements, before, rows)
-    return lines, elements, _lanes_of(areas, frame, lanes.crs) if lanes_changed else lanes
+    return lines, elements, _lanes_of(areas, frame, lanes.crs) if of_lanes else lanes
 
 
 def _taken(correction, pieces, frame):

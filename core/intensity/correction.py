@@ -11,7 +11,6 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
-from ..execution.phase import Phase
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
@@ -30,7 +29,7 @@ from .asphalt_model import (
     to_intensity,
     to_level,
 )
-from .beams import Beams
+from .beams import Beams, run_stretches
 from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
@@ -120,8 +119,6 @@ class _IntensityReport:
     scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
     reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
-    between_after: float = float("nan")
     spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
     beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
@@ -170,7 +167,7 @@ class AsphaltLook:
         # points without a position of the vehicle, and all points
         without_vehicle, highest = np.zeros(2, np.int64), 0
         arguments = list(frame.passes), beams, scanners, step
-        for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+        for raw, equal, brightest, lost in run_stretches(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
             before.add(raw, step)
             modelled.add(equal, step)
             without_vehicle += lost
@@ -209,21 +206,13 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
         return road_points, _IntensityReport(reason=asphalt.reason)
     store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
-    report.beams = asphalt.beams.count if asphalt.beams else 0
+    report.beams = sum(map(len, asphalt.beams.corrections.values())) if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
     if report.saturation.warning:
         progress.warn(report.saturation.warning)
     for line in report.lines()[:1]:
         progress.info(line)
     return replace(road_points, store=store, has_corrected=True), report
-
-
-def _run(function, road_points, arguments, progress, source=None):
-    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
-    length, source = road_points.store.section_length, road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=road_points.store.state)
-    return road_points.executor.run(phase, road_points.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
@@ -241,7 +230,7 @@ def _corrected_store(road_points, frame, asphalt, progress):
     kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-    for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+    for index, counts in run_stretches(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
         store.adopt(index, store.folder)
         after.add(counts, asphalt.step)
     return store, after.counts
@@ -349,10 +338,7 @@ def _report(before, after, table, points_by_scanner):
             row.update({f"asphalt_{name}": mean, f"spread_{name}": variation,
                         f"fall_{name}": float(levels[scanner, use].max() / max(levels[scanner, use].min(), 1e-9))})
         report.scanners.append(row)
-    for name, levels in zip(("before", "after"), medians):
-        means = [row[f"asphalt_{name}"] for row in report.scanners]
-        setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
-        setattr(report, f"spread_{name}", _variation(levels[usable], weight[usable])[1])
+    report.spread_before, report.spread_after = (_variation(levels[usable], weight[usable])[1] for levels in medians)
     return report
 
 

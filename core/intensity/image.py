@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import lru_cache
 from os import PathLike
 from typing import Any
 
@@ -17,7 +17,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
-from ..execution.phase import THREADS, Executor, Phase, digest
+from ..execution.phase import THREADS, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
@@ -33,7 +33,6 @@ from .weights import IMAGE
 PRODUCTS_AT_ONCE = 1 << 18
 
 
-_thread = threading.local()   # the kernels of each thread
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 
 
@@ -130,16 +129,14 @@ def _in_cell(units, origin, cell_size):
     return cell, position.astype(np.float32)
 
 
+@lru_cache(maxsize=1)
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
-    """The thread's own kernels: of all cells around a point, of the nearest nine, and of those beyond."""
-    if getattr(_thread, "settings", None) != settings:
-        radius, reach = settings.radius_cells, _reach_of(settings)
-        offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
-                   if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
-        near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
-        _thread.settings = settings
-        _thread.kernels = [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
-    return _thread.kernels
+    """The kernels of all cells around a point, of the nearest nine, and of those beyond; several threads may use them."""
+    reach = _reach_of(settings)
+    offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
+               if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < settings.radius_cells]
+    near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
+    return [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
 
 
 class _Kernel:
@@ -239,13 +236,17 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
-        for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
-            image.put(column, row, values)
-            if file is not None:
-                file.write(column, row, values)
-                # compressed by another thread while the next tiles are made
-                file.flush()
-    progress.info(grid.summary)
+        tasks = [new[k:k + IMAGE.tiles_per_task] for k in range(0, len(new), IMAGE.tiles_per_task)]
+        phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
+            *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
+        for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
+            for tile in filter(None, tiles):
+                image.put(*tile)
+                if file is not None:
+                    file.write(*tile)
+                    # compressed by another thread while the next tiles are made
+                    file.flush()
+    progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 
 
@@ -306,16 +307,6 @@ def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress
     return grid, _pieces_by_tile(grid, pieces)
 
 
-def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
-           progress: Progress, executor: Executor) -> Iterator[FilledTile]:
-    """Yield every tile with data, in the order of the road."""
-    tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
-    phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-        *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
-    for tiles in executor.run(phase, tasks, progress):
-        yield from (tile for tile in tiles if tile is not None)
-
-
 def _span(length, road, number):
     """A road, and the stations between which a window or a piece lies by its number."""
     return road, number * length, (number + 1) * length
@@ -338,7 +329,7 @@ def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]]
 def _pieces_of_window(road_points, road, number, settings):
     pieces, values = [], []
     for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window):
-        points = _points_of(road_points, road, piece)
+        points = road_points.window(*_span(PIECE_LENGTH, road, piece))
         if len(points):
             step = _sampling_step(points, settings)
             d = points.records["d"]
@@ -346,11 +337,6 @@ def _pieces_of_window(road_points, road, number, settings):
             values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
     limits = tuple(np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()) if values else ()
     return [_Piece(*piece, limits) for piece in pieces]
-
-
-def _points_of(road_points, road, number):
-    """The points of one piece."""
-    return road_points.window(road, number * PIECE_LENGTH, (number + 1) * PIECE_LENGTH)
 
 
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
@@ -381,7 +367,8 @@ def _sums_of_piece(road_points, piece, settings):
         share = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), np.float32(0.0), np.float32(1.0))
         return share * np.float32(settings.beta) + np.float32(1.0 - settings.beta)
 
-    return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
+    points = road_points.window(*_span(PIECE_LENGTH, piece.road, piece.number))
+    return _interpolation_sums(points, brightness, road_points.origin, settings, piece.step)
 
 
 class _Grid:
@@ -394,10 +381,6 @@ class _Grid:
     @property
     def geotransform(self) -> tuple[float, ...]:
         return self.column * self.cell, self.cell, 0.0, (self.row + 1) * self.cell, 0.0, -self.cell
-
-    @property
-    def summary(self) -> str:
-        return f"Intensity image: {self.width:,} x {self.height:,} cells of {self.cell:g} m."
 
     def tiles_of(self, extent: Extent) -> list[Tile]:
         """(column, row) of every tile that an extent touches."""

@@ -66,8 +66,7 @@ class PieceOfRoad:
 
     def within(self, grid: RoadGrid) -> tuple[slice, slice]:
         """Where this piece lies in a larger grid: slices of its rows and columns."""
-        own_grid = self.grid
-        return slice(own_grid.first - grid.first, own_grid.last - grid.first), slice(own_grid.low - grid.low, own_grid.high - grid.low)
+        return slice(self.grid.first - grid.first, self.grid.last - grid.first), slice(self.grid.low - grid.low, self.grid.high - grid.low)
 
     def numbers_in(self, grid: RoadGrid, cell: np.ndarray) -> np.ndarray:
         """Flat numbers in a larger grid of some cells of this one, by their flat numbers here; (N,) int32 each."""
@@ -274,13 +273,8 @@ def _fill(mask, row, column, gaps, longest):
     sparse[row[inside] + longest, column[inside]] = gaps[inside]
     on_track = fill_gaps(sparse > 0, longest, 0)
     inner = slice(longest, longest + len(mask))
-    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[inner]
+    met = np.maximum.accumulate(np.where(sparse > 0, np.arange(len(sparse))[:, None], 0), axis=0)   # row of the value last met
+    widest = np.where(on_track & (sparse == 0), np.take_along_axis(sparse, met, axis=0), sparse)[inner]
     mask |= on_track[inner]
     for gap in np.unique(gaps).tolist():
         mask |= fill_gaps(widest >= gap, gap, 1)
-
-
-def _carried(values):
-    """(A, B) the value last met along the first axis."""
-    row = np.maximum.accumulate(np.where(values > 0, np.arange(len(values))[:, None], 0), axis=0)
-    return np.take_along_axis(values, row, axis=0)

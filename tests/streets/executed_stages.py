@@ -29,7 +29,7 @@ from lanewright.core.survey.store import section_store
 
 PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected_of_stretch",
           "windows_of_image", "tiles_of_image", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
-          "combs_of_windows", "pieces_of_clusters", "shapes_of_clusters", "outlines_of_markings", "sections_of_stretch",
+          "combs_of_windows", "pieces_of_clusters", "outlines_of_markings", "sections_of_stretch",
           "estimate_of_road", "heights_of_windows"]
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from ...common.arrays import stretch_of
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -71,44 +72,11 @@ class MarkingLineSettings:
 
 
 @dataclass
-class _LineShape:
-    """A line that can be drawn between two stations: the fit of its curve, whose residuals belong to the places at (K,) stations `s`."""
-
-    fit: CurveFit
-    wanted: bool   # whether the curve is of the wanted kind, not the automatic one
-    s: np.ndarray
-    station_to_u: tuple[np.ndarray, np.ndarray]
-    height: Profile   # above the trajectory, so that it goes on along the road's slope
-
-    def u(self, s: np.ndarray) -> np.ndarray:
-        """Arc length on the curve at stations s, going on evenly beyond the ends."""
-        stations, lengths = self.station_to_u
-        inside = np.interp(s, stations, lengths)
-        return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
-
-    def draw(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-        """(M,) stations from `first` to `last`, at most half a metre apart, and (M, 3) local places there; z above the trajectory."""
-        ends = self.u(np.array([first, last]))
-        count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
-        u = np.linspace(ends[0], ends[1], count)
-        stations, lengths = self.station_to_u
-        s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
-        return s, np.c_[self.fit.curve.at(u), self.height(s)]
-
-    def drawn(self, pieces: Sequence[tuple[float, float]]) -> _DrawnLine:
-        """The line between the first and the last station of each piece."""
-        residuals = [self.fit.residuals[slice(np.searchsorted(self.s, first), np.searchsorted(self.s, last, side="right"))] for first, last in pieces]
-        stations, places = zip(*(self.draw(first, last) for first, last in pieces))
-        return _DrawnLine(self.wanted, self.fit.curve, [self.u(np.array(ends)) for ends in pieces], stations, places,
-                          [float(np.sqrt(np.mean(off**2))) if len(off) else np.nan for off in residuals])
-
-
-@dataclass
 class _DrawnLine:
     """A line that was fitted, piece by piece.
 
-    wanted : whether its curve is of the wanted kind; arc : arc lengths on the curve at both ends of each piece
-    stations, places : (M,) and (M, 3) of each piece, as of `_LineShape.draw`
+    wanted : whether its curve is of the wanted kind, not the automatic one; arc : arc lengths on the curve at both ends of each piece
+    stations, places : (M,) stations of each piece, at most half a metre apart, and (M, 3) local places there; z above the trajectory
     rmse : m, of the paint of each piece about the curve, NaN where it has none
     """
 
@@ -139,11 +107,30 @@ def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degre
         u, e = fit.curve.project(course.x, course.y, guess)
         if guess is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
-        rising = np.maximum.accumulate(u)
-        keep = np.append(True, np.diff(rising) > 1e-6)
-        shape = _LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height)
-        drawn.append(shape.drawn(course.pieces))
+        drawn.append(_drawn_line(course, fit, of_kind, np.maximum.accumulate(u), height))
     return drawn
+
+
+def _drawn_line(course: _Course, fit: CurveFit, wanted: bool, u: np.ndarray, height: Profile) -> _DrawnLine:
+    """The line between the first and the last station of each piece; u : (N,) arc lengths of the places of the course, which never fall."""
+    keep = np.append(True, np.diff(u) > 1e-6)
+    measured, stations, lengths = course.s[course.own], course.s[keep], u[keep]
+    line = _DrawnLine(wanted, fit.curve, [], [], [], [])
+    for first, last in course.pieces:
+        arc = _led_on(np.array([first, last]), stations, lengths)
+        along = np.linspace(*arc, max(2, int(np.ceil((arc[1] - arc[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1))
+        s, residuals = _led_on(along, lengths, stations), fit.residuals[stretch_of(measured, first, last)]
+        line.arc.append(arc)
+        line.stations.append(s)
+        # heights above the trajectory go on along the road's slope
+        line.places.append(np.c_[fit.curve.at(along), height(s)])
+        line.rmse.append(float(np.sqrt(np.mean(residuals**2))) if len(residuals) else np.nan)
+    return line
+
+
+def _led_on(at, places, values):
+    """Values at places, interpolated, and going on evenly beyond both ends."""
+    return np.interp(at, places, values) + np.minimum(at - places[0], 0.0) + np.maximum(at - places[-1], 0.0)
 
 
 @dataclass(frozen=True)

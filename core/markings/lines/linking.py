@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -377,14 +376,6 @@ def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
 UNKNOWN, BARE, FREE = 0, 1, 2
 
 
-class _SeenPaint(NamedTuple):
-    """What is known of the paint of a line: the spacing of the tracks that it was seen on, m, its brightness and its width, m."""
-
-    spacing: float
-    brightness: float
-    width: float
-
-
 def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: RoadPoints, road_points: RoadPoints) -> PaintedLines:
     """Lines that know, in `unseen`, where in their gaps they lie between two tracks of the scan.
 
@@ -401,17 +392,19 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
         # few tracks show less of the width of a line and never more
         width = float(markings.width[members][markings.length[members] >= TREND.min_seen_length].max(initial=0.0))
-        line_paint = _paint_beside(paint, road, course, first, last, width)
-        if line_paint is None or line_paint.spacing < TRACKS.min_track_gap:
+        points = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
+        on_line = (points.cluster > 0) & (np.abs(points.d - np.interp(points.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
+        if not on_line.any() or not width or median(points.spacing[on_line].astype(float)) < TRACKS.min_track_gap:
             continue
+        brightness = median(points.value[on_line].astype(float))
         near_gap = members[(markings.extent[members, 0] <= last) & (markings.extent[members, 1] >= first)]
         gaps = _less(first, last, markings.extent[near_gap, :2])
         steps = [np.linspace(a, b, int(np.ceil((b - a) / TREND.step)) + 1) for a, b in gaps]
-        states = [_states(road_points, road, course, stations, line_paint) for stations in steps]
+        states = [_states(road_points, road, course, stations, width, brightness) for stations in steps]
         state_of_steps = np.concatenate([*states, np.empty(0, int)])
         if np.count_nonzero(state_of_steps == BARE) <= TREND.max_bare_share * np.count_nonzero(state_of_steps != UNKNOWN):
             free = [(stations[a], stations[b]) for stations, state in zip(steps, states) for a, b in mask_runs(state == FREE)]
-            unseen[k] = np.array([(a, b, line_paint.width) for a, b in free if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
+            unseen[k] = np.array([(a, b, width) for a, b in free if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
     return replace(lines, unseen=unseen)
 
 
@@ -440,15 +433,6 @@ class _MarkedLines:
         return self.known[key]
 
 
-def _paint_beside(paint, road, course, first, last, width):
-    """_SeenPaint of a line about a gap; None where there is none."""
-    points = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
-    on_line = (points.cluster > 0) & (np.abs(points.d - np.interp(points.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
-    if not on_line.any() or not width:
-        return None
-    return _SeenPaint(median(points.spacing[on_line].astype(float)), median(points.value[on_line].astype(float)), width)
-
-
 def _less(first, last, spans):
     """[[first, last]] of what is left of an interval without some others, (K, 2)."""
     spans = spans[np.argsort(spans[:, 0], kind="stable")]
@@ -457,28 +441,28 @@ def _less(first, last, spans):
     return left[left[:, 1] - left[:, 0] >= TREND.shortest_unseen].tolist()
 
 
-def _states(road_points, road, course, steps, seen):
-    """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given."""
+def _states(road_points, road, course, steps, width, brightness):
+    """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given, in a line of some width (m) and brightness."""
     points = road_points.window(road, steps[0] - TREND.step_reach, steps[-1] + TREND.step_reach)
     s, offset, value = points.s, points.d - np.interp(points.s, *course), points.value
     close = np.abs(offset) <= TRACKS.max_track_gap
     s, offset, value = s[close], offset[close], value[close]
-    clear = np.abs(offset) > seen.width / 2 + TRACKS.min_track_gap
+    clear = np.abs(offset) > width / 2 + TRACKS.min_track_gap
     if not clear.any():
         return np.full(len(steps) - 1, UNKNOWN)
-    dark = value < (median(value[clear].astype(float)) + seen.brightness) / 2
+    dark = value < (median(value[clear].astype(float)) + brightness) / 2
     count = len(steps) - 1
     low, high, painted = np.full(count, -np.inf), np.full(count, np.inf), np.zeros(count, bool)
     # a point counts for the step that it lies in and for those that it lies near
     for reach in (-TREND.step_reach, 0.0, TREND.step_reach):
         step = np.searchsorted(steps, s + reach, side="right") - 1
         inside = (step >= 0) & (step < count)
-        below, above, on_paint = inside & dark & (offset <= 0), inside & dark & (offset >= 0), inside & ~dark & (np.abs(offset) <= seen.width / 2)
+        below, above, on_paint = inside & dark & (offset <= 0), inside & dark & (offset >= 0), inside & ~dark & (np.abs(offset) <= width / 2)
         np.maximum.at(low, step[below], offset[below])
         np.minimum.at(high, step[above], offset[above])
         painted[step[on_paint]] = True
     room, nearest = high - low, np.minimum(high, -low)
-    bare = (room < TREND.min_free_share * seen.width) | (nearest < TREND.core_share * seen.width)
+    bare = (room < TREND.min_free_share * width) | (nearest < TREND.core_share * width)
     return np.where(bare, BARE, np.where(painted | (room <= TRACKS.max_track_gap), FREE, UNKNOWN))
 
 

@@ -142,7 +142,8 @@ def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSe
     # clusters that were joined, then stripes
     measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
     measured += [of_stripe for _, of_stripe in striped]
-    shapes = iter((yield asked(shapes_of_clusters, partial(_columns_at, records, MEASURED), measured, 1.0)))
+    answers = yield asked(pieces_of_clusters, partial(_columns_at, records, MEASURED), measured, 1.0, [False] * len(measured))
+    shapes = iter([shape for _, (shape,) in answers])
     of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
     return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
 
@@ -173,8 +174,8 @@ def _stripe_markings(records, stripes, striped, shapes):
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        markings.append(_Marking(painted[first:first + len(rows)], rows, replace(shape, length=length, width=width), "zebra", "other",
-                                 shapely.Polygon(corners)))
+        shape = replace(shape, length=length, width=width)
+        markings.append(_Marking(painted[first:first + len(rows)], rows, shape, "zebra", shapely.Polygon(corners)))
         first += len(rows)
     return markings
 
@@ -229,23 +230,22 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
     possible = clear & (np.array(covered) <= CLASSES.min_covered_share)
     if has_corrected:
         bright = relative_contrast(Points(records).value, records["s"], np.array([0, *(b for _, b in bounds)]))
-        pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
+        pale = [too_pale(share, kind) for share, kind in zip(bright.tolist(), kinds)]
         possible &= ~np.array(pale, bool)
-        kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
-    classes: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-    for members, kind in (yield from painted_figures(shapes, [kind for kind, _ in kinds], possible,
-                                                     lambda group: _cells_together(records, bounds, group))):
+        kinds = [NOT_PAINT if faint else kind for faint, kind in zip(pale, kinds)]
+    classes: list[tuple[tuple[int, ...], str]] = [((k,), kind) for k, kind in enumerate(kinds)]
+    for members, kind in (yield from painted_figures(shapes, kinds, possible, lambda group: _cells_together(records, bounds, group))):
         for k in members:
-            classes[k] = ((), NOT_PAINT, "other")
-        classes[members[0]] = (members, kind, "other")
+            classes[k] = ((), NOT_PAINT)
+        classes[members[0]] = (members, kind)
     # the columns that told kinds of markings are not used any more
     markings, records = [*stripes], records.unread()
-    for members, kind, use in classes:
+    for members, kind in classes:
         if kind != NOT_PAINT:
             check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
-            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
+            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
     undrawn = [marking for marking in markings if marking.outline is None]
     outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
@@ -253,7 +253,7 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
                                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
     drawn = [next(outlines) if marking.outline is None
              else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
-    return markings, drawn, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
+    return markings, drawn, sum(kind == NOT_PAINT for members, kind in classes if members)
 
 
 class _Marking(NamedTuple):
@@ -263,7 +263,6 @@ class _Marking(NamedTuple):
     rows: np.ndarray
     shape: Shape
     kind: str
-    use: str
     outline: shapely.Polygon | None = None
 
 
@@ -299,16 +298,16 @@ def _by_cluster(labels, fewest):
     large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)
     labels = labels[order[:np.count_nonzero(large)]]
-    starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
+    starts = np.flatnonzero(np.diff(labels, prepend=-1))
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
 def _row(marking, number, line, frame):
     """The fields of one marking."""
     shape = marking.shape
-    return dict(road=int(line.number), cluster=number, use=marking.use, station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
-                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(marking.records, line, frame),
-                points=shape.points, **{"class": marking.kind})
+    return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
+                offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,
+                scan_m=_scanning_distance(marking.records, line, frame), points=shape.points, **{"class": marking.kind})
 
 
 def _scanning_distance(records, line, frame):
@@ -363,11 +362,6 @@ def _pieces_of_cluster(s, d, spacing, divisible):
     if parts is None or not parts.any():
         return None, [measure(s, d, spacing)]
     return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
-
-
-def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[Shape]:
-    """The phase that measures clusters; item : columns MEASURED of the points, and the bounds of the clusters."""
-    return [measure(*columns) for columns in _clusters(item)]
 
 
 def outlines_of_markings(source: NoSource, item: tuple[Any, ...], roads: Sequence[Road]) -> tuple[np.ndarray, ...]:

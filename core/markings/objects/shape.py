@@ -47,10 +47,6 @@ class Shape:
         return self.length / max(self.width, 1e-3)
 
     @property
-    def station(self) -> float:
-        return (self.s0 + self.s1) / 2
-
-    @property
     def along(self) -> bool:
         """Whether it runs along the road."""
         return abs(self.direction) <= SHAPES.max_angle_along
@@ -75,7 +71,10 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         reach_of_cell[member] = reach
         mask, first = filled_between_tracks(cells, reach_of_cell)
         cells, apart = np.argwhere(mask) + first, median(spacing) * 1e-3
-    direction = _principal_direction(cells)
+    # of the principal axis of the cells
+    x, y = (cells - cells[0]).T.astype(float)
+    x, y = x - x.mean(), y - y.mean()
+    direction = float(0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum()))
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= SHAPES.max_angle_along and s1 - s0 > 2 * SHAPES.middle_line_step_units:
         length = (s1 - s0) * COORDINATE_SCALE
@@ -127,12 +126,6 @@ def _oblique(s, d):
         clear = len(along) >= SHAPES.min_end_points and np.ptp(along) >= SHAPES.min_end_units
         slopes.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
     return slopes[0], slopes[1]
-
-
-def _principal_direction(cells):
-    x, y = (cells - cells[0]).T.astype(float)
-    x, y = x - x.mean(), y - y.mean()
-    return float(0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum()))
 
 
 def middle_line(s: np.ndarray, d: np.ndarray, spacing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:

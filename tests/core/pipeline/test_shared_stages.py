@@ -14,7 +14,7 @@ from lanewright.core.execution.work_folder import WorkFolder
 pytestmark = pytest.mark.slow
 
 KILLED_IN = ("surface_points", "corrected_of_stretch", "tiles_of_image", "paint_of_window", "links_of_windows",
-             "combs_of_windows", "shapes_of_clusters", "heights_of_windows")
+             "combs_of_windows", "pieces_of_clusters", "heights_of_windows")
 
 
 @pytest.fixture(scope="module")

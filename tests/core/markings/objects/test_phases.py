@@ -10,7 +10,7 @@ from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
-from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters, shapes_of_clusters
+from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters
 from lanewright.core.markings.objects.figures import figure_of_cells, figures_of
 from lanewright.core.markings.road_grid import CELL_SIZE
 
@@ -50,7 +50,7 @@ def asking_all():
     windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
     combs = yield asked(combs_of_windows, lambda rows: (spots[rows],), [rows for rows in windows if len(rows) > 3], 0.2)
     pieces = yield asked(pieces_of_clusters, columns, members, 0.4, [number < 4 for number in range(len(members))])
-    shapes = yield asked(shapes_of_clusters, columns, members, 0.6)
+    shapes = [shape for _, (shape,) in (yield asked(pieces_of_clusters, columns, members, 0.6, [False] * len(members)))]
     shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
     figures = yield Asked(figure_of_cells, [(cells, np.zeros(len(cells))) for cells in shown], 1.0, read=lambda kind: [kind])
     return ([comb and (comb.middle.tobytes(), comb.heading, comb.pitch, comb.phase, comb.coherence) for comb in combs],
