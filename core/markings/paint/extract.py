@@ -127,7 +127,6 @@ class ScannerScatter:
 
     @property
     def noisy(self) -> list[int]:
-        """Scanners that are noisy, in order."""
         return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
 
     def noisy_windows(self, road: int) -> set[int]:
