@@ -69,11 +69,10 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     executor: Executor = road_points.executor if isinstance(image, TiledImage) else THREADS
     source = PaintSource(road_points, image, frame, executor.folder)
     paint = replace(RoadPoints.empty_like(road_points), store=source.paint, has_spacing=True)
-    windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
-    scatter = ScannerScatter.of(road_points, [(road, window) for road, numbers in windows for window in numbers], executor, progress.part(0.0, 0.1))
+    items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
+    scatter = ScannerScatter.of(road_points, items, executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
-    items = [(road, window) for road, numbers in windows for window in numbers]
+    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
     phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
