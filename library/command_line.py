@@ -16,8 +16,8 @@ from ..algorithms.provenance import own_version
 from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress, RemainingTime
+from . import algorithm_named, algorithms, speak
 from .call import FileCall
-from .run import algorithm_named, algorithms, speak
 
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",

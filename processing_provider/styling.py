@@ -37,7 +37,7 @@ from ..algorithms.destinations import destination_path
 from ..core.common.features import COLOUR
 from .results.attributes import WORDS, explain_attributes
 from .results.layer_tree import place_layer
-from .results.origin import describe_origin
+from .results.road_maps import describe_origin
 from .results.runs import GROUP
 from .texts import tr
 

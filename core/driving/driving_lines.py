@@ -106,7 +106,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
     """The lanes of one road as a list of LaneTrack; `lane_width` where only one line is painted."""
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
-    tracks = beyond_paint(connect(tracks, settings.max_bridge), road.boundaries)
+    tracks = beyond_paint(connect(tracks, settings.max_bridge), road.boundaries, road.estimate)
     clear = [track.without_doubtful_ends() for track in laid_out(tracks)]
     return [replace(track, confidence=track.said_confidence()) for track in clear
             if track is not None and len(track) * STATION_STEP >= settings.shortest]

@@ -9,8 +9,7 @@ from qgis.core import QgsApplication, QgsMapLayer, QgsMapLayerModel, QgsProcessi
 from qgis.PyQt.QtCore import QIdentityProxyModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtWidgets import QComboBox, QWidget
 
-from ...processing_provider.results.origin import origin_of
-from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, road_map_of, road_maps, runs_of
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, origin_of, road_map_of, road_maps, runs_of
 
 TRAJECTORY = "TRAJECTORY"
 LAYER_INPUTS = ("source", "vector", "raster", "layer")

@@ -15,8 +15,8 @@ from ...core.road.scanlines.section_planes import slice_lines
 from ...core.survey.frame.placement import PlaceIndex
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import tr
+from ..background import with_points
 from ..widgets import button, column, give_map_back, row, take_map
-from .points_task import with_points
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
 

@@ -30,7 +30,7 @@ from lanewright.core.execution.tasks import versions
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
-from lanewright.core.survey import survey_reader
+from lanewright.core.survey import blocks
 from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.survey import SurveySettings
@@ -333,7 +333,7 @@ def sample(tmp_path_factory):
 def points_read(sample, monkeypatch, progress=Progress(), **execution):
     """All points of the survey as bytes, read in parts of 50,000 points, and what was sent where."""
     made, path = sample
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=50_000))
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=50_000))
     survey = open_survey([path], made.trajectory, SurveySettings(block=20_000), progress, ExecutionSettings(**execution))
     with contextlib.closing(survey.store):
         parts = [np.array(survey.section(road, number).records) for road in survey.store.roads() for number in survey.store.sections(road)]

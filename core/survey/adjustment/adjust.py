@@ -6,6 +6,7 @@ changes along the road and small corrections as prior. Two passes meet in their 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -72,8 +73,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
     stations = np.arange(first, last + REGISTER.correction_step / 2, REGISTER.correction_step)
     count = len(stations)
-    rows = np.arange(count - 1)
-    step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
+    step = sparse.diags([-1.0, 1.0], [0, 1], (count - 1, count))
     prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
     corrections = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
@@ -150,8 +150,7 @@ def _moved_track(frame, moves, p):
     if p.number not in moves.by_pass:
         return p
     change = _changes(frame.road(p.road), p.s, p.d, moves.metres(p.number, p.s))
-    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
-                   _by_station=None, _progress=None, _span=None, _by_tick={})
+    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)})
 
 
 def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]], progress: Progress = Progress(),
@@ -174,9 +173,8 @@ def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]
         return store.partition(key[0], records.with_columns(**moved)) if len(records) else None
 
     try:
-        for points in ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress):
-            if points is not None:
-                store.add(points)
+        for points in filter(None, ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress)):
+            store.add(points)
     except BaseException:
         store.close()
         raise
@@ -312,30 +310,20 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (
-                 f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
-    more = _further(places)
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: lines may be doubled there. Adjust the trajectories to "
-            "each other, or process each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
+            "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
-            "measure a control point there if these centimetres matter.")
+            "measure a control point there if these centimetres matter.") if places else ""
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    named = (f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named])
-    return ", ".join(named) + _further(places)
-
-
-def _further(places):
-    return f" and at {len(places) - ADJUST.most_named} further places" if len(places) > ADJUST.most_named else ""
+    far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
+    named = (f"{start:.0f} to {end:.0f} m ({far if np.isinf(metres) else size.format(100 * metres)})" for start, end, metres in places)
+    further = len(places) - ADJUST.most_named
+    return ", ".join(itertools.islice(named, ADJUST.most_named)) + (f" and at {further} further places" if further > 0 else "")
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
@@ -352,26 +340,24 @@ class Beside(NamedTuple):
     stations: np.ndarray   # stations, places: (N,) m on the first, middles of windows of `correction_step`, and on the second
     places: np.ndarray
     apart: np.ndarray   # (N,) m of offset, left positive, from the first to the second
-    up: np.ndarray   # (N,) m by which the points of the second lie higher, NaN where both hardly see the same
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
-        up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
-        measured = pair._replace(up=np.array(list(up)))
-        message, warns = _message_of_carriageways(measured)
+        up = np.array(list(ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))))
+        message, warns = _message_of_carriageways(pair, up)
         (progress.warn if warns else progress.info)(message)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
-    """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
+    """Pairs of roads that run beside each other for `shortest_beside` and more on one level."""
     pairs = []
     for road, other_road, s, places, offset, rise in _parallel(frame):
         rows = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
         if len(rows) * REGISTER.correction_step >= ADJUST.shortest_beside:
             way = np.sign(np.cos(frame.road(road).heading(s[rows]) - frame.road(other_road).heading(places[rows])))
-            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows], np.full(len(rows), np.nan)))
+            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows]))
     return pairs
 
 
@@ -438,17 +424,20 @@ def _flat_cells(along, across, z):
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
-    """What is said of two roads beside each other, and whether it is a warning."""
-    measured = np.isfinite(pair.up)
-    far = measured & (np.abs(pair.up) > ADJUST.max_height_apart)
+def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
+    """What is said of two roads beside each other, and whether it is a warning.
+
+    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
+    """
+    measured = np.isfinite(up)
+    far = measured & (np.abs(up) > ADJUST.max_height_apart)
     intro = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{intro}. Their drives differ in height at "
-                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist())), 'by up to {:.1f} cm')}. "
+                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(up[far]).tolist())), 'by up to {:.1f} cm')}. "
                 "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False
-    return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "
+    return (f"{intro}: in height they agree within {100 * np.abs(up[measured]).max():.1f} cm; "
             "how far they lie apart across is not known.", False)
