@@ -335,7 +335,6 @@ def _reason_against(road_points, frame):
 
 
 def _report(before, after, table, points_by_scanner):
-    """_IntensityReport of the counts before and after."""
     rows = table.distance_kind, np.arange(len(table.distance_kind))
     medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)

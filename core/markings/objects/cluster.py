@@ -318,7 +318,6 @@ def _by_cluster(labels, fewest):
 
 
 def _row(marking, number, line, frame):
-    """The fields of one marking."""
     shape = marking.shape
     return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
                 offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,

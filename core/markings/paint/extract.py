@@ -72,12 +72,11 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     executor: Executor = road_points.executor if isinstance(image, TiledImage) else THREADS
     source = PaintSource(road_points, image, frame, executor.folder)
     paint = replace(RoadPoints.empty_like(road_points), store=source.paint, has_spacing=True)
-    windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
+    items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
-    items = [(road, window) for road, numbers in windows for window in numbers]
+    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
     phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
@@ -109,7 +108,6 @@ class ScannerScatter:
 
     @property
     def noisy(self) -> list[int]:
-        """Scanners that are noisy, in order."""
         return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
 
     def noisy_windows(self, road: int) -> set[int]:
