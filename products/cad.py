@@ -257,24 +257,19 @@ def _element(piece):
         return "Curve", {"rot": ways.pop("rot"), "crvType": "arc", "radius": abs(1 / bend), **along, "chord": float(np.hypot(*(end - start))),
                          "delta": float(np.degrees(abs(bend) * piece.length)), **ways}, {
             "Start": start, "Center": start + np.array([-np.sin(first), np.cos(first)]) / bend, "End": end}
+    chord, turn = end - start, np.sin(last - first)
+    # where the tangents at both ends meet; half-way where they are parallel
+    tangents_meet = (start + end) / 2 if abs(turn) < 1e-9 else start + np.array([np.cos(first), np.sin(first)]) * (
+        chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
     radii = ("INF" if abs(bend) < 1e-9 else f"{abs(1 / bend):.6f}" for bend in piece.values)
     return "Spiral", {"length": piece.length, **dict(zip(("radiusStart", "radiusEnd"), radii)), "rot": ways.pop("rot"), "spiType": "clothoid",
                       "staStart": piece.s, "theta": float(np.degrees(abs(last - first))), **ways}, {
-        "Start": start, "PI": _intersection(start, first, end, last), "End": end}
+        "Start": start, "PI": tangents_meet, "End": end}
 
 
 def _azimuth(heading: float) -> float:
     """Degrees clockwise from north."""
     return float((90.0 - np.degrees(heading)) % 360.0)
-
-
-def _intersection(start, first, end, last):
-    """Where the tangents at both ends meet; half-way where they are parallel."""
-    turn = np.sin(last - first)
-    if abs(turn) < 1e-9:
-        return (start + end) / 2
-    chord = end - start
-    return start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
 
 
 def surface_lines(model: SurfaceModel) -> list[_DxfLine]:

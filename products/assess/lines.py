@@ -13,19 +13,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.curves.line_segments import SegmentIndex, single_lines
-from .matching import (
-    NAN,
-    Errors,
-    LinePoints,
-    Rates,
-    ReferenceStationing,
-    Stations,
-    TrajectoryStationing,
-    constant_runs,
-    cut_runs,
-    sample_lines,
-    share_of,
-)
+from .matching import Errors, LinePoints, Rates, ReferenceStationing, Stations, TrajectoryStationing, constant_runs, cut_runs, sample_lines, share_of
 
 # Lines against reference lines: completeness, correctness and deviations.
 #
@@ -165,7 +153,7 @@ def match_lines(result: Sequence[Any], reference: Sequence[Any], area: Any = Non
     back = _nearest_points(reference_points, result, max_angle, progress.part(0.5, 1.0))
     near = nearest.distance <= MAX_MATCH_DISTANCE
     return LineMatch(result, reference, result_owner, reference_owner, result_points, reference_points, nearest.distance, back.distance,
-                     np.where(near, nearest.side * nearest.distance, NAN), np.where(near, result_points.z - nearest.z, NAN),
+                     np.where(near, nearest.side * nearest.distance, np.nan), np.where(near, result_points.z - nearest.z, np.nan),
                      np.where(near, nearest.line, -1))
 
 
@@ -302,7 +290,7 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     keys, intervals = _intervals(stations, settings.interval)
     groups = [_LineGroup(*group) for group in zip((result_lines, reference_lines, excluded_lines), (result_owner, reference_owner, excluded_owner),
                                                   (result_points, reference_points, excluded_points), stations, intervals)]
-    signed = np.where(np.isfinite(nearest.distance), along.outward(result_points, nearest, stations[0]) * nearest.distance, NAN)
+    signed = np.where(np.isfinite(nearest.distance), along.outward(result_points, nearest, stations[0]) * nearest.distance, np.nan)
     table = _judge(keys, groups, nearest, signed, settings, reasons)
     progress.report(0.9)
     beyond = float(result_points.length[groups[0].interval < 0].sum())
@@ -350,7 +338,7 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     size = np.abs(signed[inside])
     largest = np.full(count, -np.inf)
     np.maximum.at(largest, rows, np.where(np.isfinite(size), size, -np.inf))
-    largest[~np.isfinite(largest)] = NAN
+    largest[~np.isfinite(largest)] = np.nan
     rise = (result_group.points.z - nearest.z)[inside]
     return _BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
                              judged & enough, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))

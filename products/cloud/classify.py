@@ -17,14 +17,13 @@ from ...core.common.parallel import check_cancelled
 from ...core.common.setting import Limited, setting
 from ...core.road.surface.ground_grid import MeasuredGround, windows_of
 from ...core.road.weights import SURFACE
-from ...core.survey.blocks import unwrap_week
 from ...core.survey.frame.projection import RoadProjection
 from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.las.point_fields import IntensitySource
 from ...core.survey.store.columns import Columns
 from ...core.survey.store.records import COORDINATE_SCALE
 from ...core.survey.survey import Survey
-from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK
+from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK, unwrap_week
 
 
 class PointClass(IntEnum):

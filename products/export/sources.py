@@ -219,8 +219,7 @@ class NearestValues:
     """
 
     def __init__(self, layer: Features | None, name: str) -> None:
-        rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
-                                                                  if g is not None and row.get(name) is not None]
+        rows = [(g, float(row[name])) for g, row in layer or () if g is not None and row.get(name) is not None]
         # of long lines the tree finds the nearest segment much sooner than the nearest line
         parts, values = [], []
         for geometry, value in rows:
@@ -352,15 +351,11 @@ def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.nda
 
 
 def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
-    if markings is None:
-        return []
-    return [geometry for geometry, row in markings if geometry is not None and not geometry.is_empty and row.get("class") in classes]
+    return [geometry for geometry, row in markings or () if geometry is not None and not geometry.is_empty and row.get("class") in classes]
 
 
 def _groups(shapes: list[Any]) -> list[list[Any]]:
     """Shapes that lie together."""
-    if not shapes:
-        return []
     joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
     groups: list[list[Any]] = [[] for _ in joined]
     tree = shapely.STRtree(joined)

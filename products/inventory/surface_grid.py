@@ -194,7 +194,7 @@ def _line(x, y):
     return float(level), float(slope)
 
 
-def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
+def height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
     """The errors that explain the overlaps of one road best: least squares with the priors above, robust against single windows.
 
     passes : all passes of the survey, by number
@@ -230,11 +230,15 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
     equation = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
     design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (equation, np.concatenate([row[0] for row in rows]))), (len(rows), size))
     value, sigma = (np.array([row[k] for row in rows]) for k in (2, 3))
-    prior = _prior(G, W, len(scanners))
+    # what is known beforehand: errors are small, and change little from window to window
+    change = sparse.diags([-np.ones(W), np.ones(W)], [0, 1], shape=(max(W - 1, 0), W))
+    priors = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
+              for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
+    known = sparse.block_diag([*priors, sparse.identity(len(scanners)) / BORESIGHT_PRIOR**2])
     weight, x = np.ones(len(rows)), np.zeros(size)
     for _ in range(REWEIGHTINGS):
         precision = sparse.diags(weight / sigma**2)
-        x = spsolve((design.T @ precision @ design + prior).tocsc(), design.T @ (precision @ value))
+        x = spsolve((design.T @ precision @ design + known).tocsc(), design.T @ (precision @ value))
         weight = 1.0 / (1.0 + ((design @ x - value) / (STEP_OUTLIER / STEP_SIGMA * sigma)) ** 2)
     boresights = x[boresight + np.searchsorted(scanners, [scanner for _, scanner in groups])]
     tilt_of = x[tilts:boresight].reshape(G, W) + (direction * boresights)[:, None]
@@ -244,14 +248,6 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
     np.maximum.at(largest, window.ravel(), np.abs([overlap.step for overlap in overlaps]))
     return HeightErrors(stations, {group: g for g, group in enumerate(groups)}, x[:tilts].reshape(G, W), tilt_of,
                         len(opposite) >= OPPOSITE_WINDOWS, float(np.median(largest)))
-
-
-def _prior(G, W, S):
-    """The normal matrix of what is known beforehand."""
-    change = sparse.diags([-np.ones(W), np.ones(W)], [0, 1], shape=(max(W - 1, 0), W))
-    parts = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
-             for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
-    return sparse.block_diag([*parts, sparse.identity(S) / BORESIGHT_PRIOR**2])
 
 
 def joined_heights(grid: _SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
@@ -320,7 +316,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
                 depths[half] = np.fmax(depths[half], np.where(finite[:, columns], depth[:, columns], -np.inf).max(axis=1) + np.where(
                     np.isfinite(depth).any(axis=1), 0.0, np.nan))
     depths[~np.isfinite(depths)] = np.nan
-    return np.maximum(depths - noise_of_largest(sigma), 0.0)
+    return np.maximum(depths - largest_noise(sigma), 0.0)
 
 
 def _breaks(profiles):
@@ -333,7 +329,7 @@ def _breaks(profiles):
     return breaks | (unseen[:, MAX_GAP_CELLS + 1:-1] - unseen[:, :-MAX_GAP_CELLS - 2] > MAX_GAP_CELLS)
 
 
-def noise_of_largest(sigma: np.ndarray) -> np.ndarray:
+def largest_noise(sigma: np.ndarray) -> np.ndarray:
     """(I,) m that noise of (I,) m in every cell adds to the largest distance below the edge."""
     independent = EDGE_LENGTH / (SMOOTHING_CELLS * CROSS_CELL)
     return np.asarray(sigma) / np.sqrt(SMOOTHING_CELLS) * np.sqrt(2.0 * np.log(independent))

@@ -167,7 +167,7 @@ def _rough_position(image, points, settings):
 def _well_spread(pixel, line, easting, northing, order):
     """Refuse control points on a line, in the image or on the map, and those that do not determine a higher order."""
     for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
-        along, across = principal_extents(places)
+        along, across = _principal_extents(places)
         if across <= COLLINEAR_RATIO * along:
             raise RoadExtractionError(f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
                                       f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
@@ -224,7 +224,9 @@ def _notes(result: Georeferencing) -> Iterator[str]:
         yield (f"{len(used)} control points are few for order {order} ({MIN_CONTROL_POINTS[order]} at least): the residuals are smaller than "
                "the errors. Use the leave-one-out error instead.")
     if order and result.outside > _NOTED_OUTSIDE_SHARE:
-        times = float(np.sqrt(_ring_leverage(result).max()))
+        ring = shapely.line_interpolate_point(shapely.box(0, 0, result.image.width, result.image.height).exterior,
+                                              np.linspace(0, 1, _OUTLINE_PLACES), normalized=True)
+        times = float(np.sqrt(fit.leverage_at(*shapely.get_coordinates(ring).T).max()))
         share = f"{100 * result.outside:.0f} % of the image lies outside the hull of the control points"
         if result.cut:
             yield f"{share} and is left out, because a polynomial of order {order} is not reliable there."
@@ -241,28 +243,15 @@ def _map_metres(points):
     crs = horizontal_part(parse_crs(points.crs))
     if crs is None or not crs.is_projected:
         return
-    scale = _scale_of_map(crs, points)
-    if np.isfinite(scale) and abs(scale - 1.0) > _MAX_SCALE_ERROR:
-        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
-               "For measuring, use control points in the CRS of the survey.")
-
-
-def _scale_of_map(crs, points):
-    """Metres on the map per metre on the ground at the middle of the points; NaN where the CRS is a local one."""
     try:
         projection = pyproj.Proj(crs)
         longitude, latitude = projection(float(points.easting.mean()), float(points.northing.mean()), inverse=True)
-        return float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))
-    except (pyproj.exceptions.CRSError, pyproj.exceptions.ProjError):
-        return float("nan")
-
-
-def _ring_leverage(result):
-    """Leverage along the border of the image."""
-    frame = shapely.box(0, 0, result.image.width, result.image.height)
-    places = shapely.get_coordinates(shapely.line_interpolate_point(
-        frame.exterior, np.linspace(0, 1, _OUTLINE_PLACES), normalized=True))
-    return result.fit.leverage_at(places[:, 0], places[:, 1])
+        scale = float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))   # metres on the map per metre on the ground
+    except (pyproj.exceptions.CRSError, pyproj.exceptions.ProjError):   # a local CRS
+        return
+    if np.isfinite(scale) and abs(scale - 1.0) > _MAX_SCALE_ERROR:
+        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
+               "For measuring, use control points in the CRS of the survey.")
 
 
 def _burden(fit):
@@ -366,11 +355,17 @@ class _ControlPointFit:
         return np.sum(np.linalg.solve(self.triangle.T, terms.T) ** 2, axis=0)
 
 
-def principal_extents(places: np.ndarray) -> tuple[float, float]:
+def _principal_extents(places: np.ndarray) -> tuple[float, float]:
     """Extents of (N, 2) places along their principal axes, the longer one first."""
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
     return float(along), float(across)
+
+
+def lie_on_a_line(places: np.ndarray) -> bool:
+    """Whether (N, 2) places lie on a line, nearly."""
+    along, across = _principal_extents(places)
+    return across <= COLLINEAR_RATIO * along
 
 
 def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:

@@ -15,15 +15,10 @@ from ..sources import LEAST_CURB
 from ..xml_tree import XmlElement
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 
-ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
-                   "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
-                   "taxi", "HOV", "mwyEntry", "mwyExit", "curb", "walking", "slipLane", "shared")
 LINK_NAMES = {"start": "predecessor", "end": "successor"}   # an end of a road or lane -> its link there
 OPEN_END = "lanewright:open_end"   # userData of a driven lane at whose start or end, or both, the survey shows no lane to go on in
 DRIVEN_TYPES = ("driving", "bidirectional", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus", "taxi", "HOV", "mwyEntry", "mwyExit",
                 "slipLane", "stop")
-MARK_TYPES = ("none", "solid", "broken", "solid solid", "solid broken", "broken solid", "broken broken", "botts dots", "grass", "curb", "custom",
-              "edge")
 
 
 @dataclass

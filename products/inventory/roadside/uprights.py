@@ -21,6 +21,7 @@ HEIGHT_BIN = 0.10        # m
 LOW_BINS = 25            # height bins in which things stand: up to 2.5 m
 TOP_BIN, TOP_BINS = 0.05, 16   # m and number of the bins below the top that tell the kind of a line
 FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
+ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN   # m: what is seen from here down stands on the ground, for grass hides the rest
 REACH_CELLS = 1          # cells on either side that belong to the same upright
 BODY_CELLS = 3           # cells on either side whose points describe it
 MIN_BINS = 2             # occupied height bins of an upright
@@ -395,13 +396,11 @@ class _LocalGround:
         return np.where(np.isfinite(between), between, np.where(np.isfinite(low), low, high))
 
 
-def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
-    """The ground under points, (N,) m stations, offsets and heights above the expected road, in so many slices from a station on.
-
-    offsets : (right, left) m
-    """
-    columns = max(int(np.ceil((offsets[1] - offsets[0]) / GROUND_CELL)), 2)
-    i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - offsets[0]) / GROUND_CELL).astype(np.int64)
+def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int) -> _LocalGround:
+    """The ground under points, (N,) m stations, offsets and heights above the expected road, in so many slices from a station on."""
+    origin = float(np.floor(d.min() / GROUND_CELL) * GROUND_CELL)   # the border of a cell, so that cells are the same wherever one looks from
+    columns = max(int(np.ceil((float(d.max()) + 1e-3 - origin) / GROUND_CELL)), 2)
+    i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - origin) / GROUND_CELL).astype(np.int64)
     inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns))
     cell, h = (i * columns + j)[inside], h[inside]
     order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), cell)
@@ -421,14 +420,14 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     low = _let_down(filled, _rims(low) | _rims(filled))
     finite = np.isfinite(low)
     if not finite.any():
-        return _LocalGround(start, offsets[0], low)
+        return _LocalGround(start, origin, low)
     # beyond what is known the ground neither rises nor falls
     level = np.where(finite, low, np.inf)
     cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
     smooth = median_filter(np.where(finite, level, 1e3), size=(3, 1), mode="nearest")
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
     ground = np.where(finite & (opened < 500.0), opened, np.nan)
-    return _LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
+    return _LocalGround(start, origin, _let_down(ground, smooth - ground > RIM_STEP))
 
 
 def _supported(place, height, count, shape):

@@ -17,18 +17,7 @@ from ....core.io.geotiff import IntensityImage
 from ....core.lazy import cv2
 from ..control_points import SourceImage
 from ..rough_place import RoughPlace
-from .places import (
-    Photo,
-    Placement,
-    SurveyedPaint,
-    find_places,
-    highest_order,
-    left_out_residuals,
-    paint_about,
-    read_photo,
-    reduced,
-    robust_placement,
-)
+from .places import Photo, Placement, SurveyedPaint, find_places, highest_order, left_out_residuals, paint_about, photo_of, reduced, robust_placement
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
@@ -50,7 +39,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     """
     settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
-    photo = read_photo(image, rough.size, paint.cell)
+    photo = photo_of(image, rough.size, paint.cell)
     progress.report(0.1)
     x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
@@ -58,12 +47,12 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
                                   "Measure the control points by hand there, at manholes and curbs for example.")
     for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
         tried = _followed(image, photo, paint, bounds, sign, x, y, part)
-        for chosen in tried:
-            pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
+        for placement, scores in tried:
+            pairs = _pair_corners(placement, paint, photo, x, y, settings)
             if pairs is not None:
-                middle = _middle_on_map(chosen.placement, image)
-                rivals = [_rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
-                          for candidate in tried if candidate is not chosen]
+                middle = _middle_on_map(placement, image)
+                rivals = [_rival_elsewhere(scores, other_scores, tuple((_middle_on_map(other, image) - middle).tolist()))
+                          for other, other_scores in tried if other is not placement]
                 near = _nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
@@ -73,8 +62,8 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
 
 
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
-    """The few best places of the search, aligned with the paint, the best first."""
-    tried: list[_Tried] = []
+    """(placement, its `_corner_scores`) of the few best places of the search, aligned with the paint, the best first."""
+    tried: list[tuple[Placement, np.ndarray]] = []
     of_photo = replace(bounds, sizes=(bounds.sizes[0] * photo.factor, bounds.sizes[1] * photo.factor))
     places = find_places(photo.contrast, paint.contrast, paint.cell, of_photo, sign, progress.part(0.0, 0.8))
     for place in places[:_CANDIDATES]:
@@ -83,19 +72,10 @@ def _followed(image, photo, paint, bounds, sign, x, y, progress):
         placement = _align(start, paint, photo, progress)
         # most corners tell whether two are the same: those beyond the photo are extrapolated
         if placement is not None and all(
-                np.median(np.hypot(*placement.metres(x, y, *candidate.placement.pixels(x, y)).T)) >= _SAME for candidate in tried):
-            tried.append(_Tried(placement, _corner_scores(placement, paint, photo, x, y)))
+                np.median(np.hypot(*placement.metres(x, y, *other.pixels(x, y)).T)) >= _SAME for other, _ in tried):
+            tried.append((placement, _corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
-    return sorted(tried, key=lambda one: -one.total)
-
-
-class _Tried(NamedTuple):
-    placement: Placement
-    scores: np.ndarray
-
-    @property
-    def total(self):
-        return float(np.nansum(np.maximum(self.scores, 0.0)))
+    return sorted(tried, key=lambda one: -float(np.nansum(np.maximum(one[1], 0.0))))
 
 
 def _proposal(image, intensity, rough, settings, pairs, rival, paint):
