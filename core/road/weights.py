@@ -241,7 +241,6 @@ class _ScanlineWeights:
     # grid
     scanline_resolution: float = 0.02   # m across between cells, and along a scanline between resampled vertices
     max_ground_depth: float = 1.0   # m below the expected road, down to which points are ground
-    cells_at_once: int = 1 << 15   # that heights are computed for: they fit the processor's cache
     # mesh
     min_driven: float = 0.01   # m driven between scan lines: of a standing vehicle one line is used
     max_rib: float = 0.30   # m, or max_lines_ahead times the way driven during a turn where that is more

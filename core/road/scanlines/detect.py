@@ -67,7 +67,7 @@ def tell_corners(points: CurbPoints, progress: Progress) -> None:
 
 def planes_of(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings, block_length: float) -> Search:
     """The planes of all roads. `block_length` : as of `curbs_from_scanlines`."""
-    return Search.of({road: source.span(road) for road in source.roads()}, source.frame, source.interval, settings.limits, block_length, beyond=1)
+    return Search.of(source.spans(), source.frame, source.interval, settings.limits, block_length, beyond=1)
 
 
 def corners_of_section(source: SurveyScanlines | LayerScanlines, item: Section,
@@ -237,13 +237,9 @@ class SurveyScanlines:
                                                                     sensor_height=self.sensor_height, lattice=self.lattice,
                                                                     decimation=decimation))
 
-    def roads(self) -> list[int]:
-        """Numbers of the roads."""
-        return self.survey.store.roads()
-
-    def span(self, road: int) -> tuple[float, float]:
-        """Stations at which a road begins and ends, m."""
-        return self.survey.store.span(road)
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """{number of a road: stations at which it begins and ends, m}"""
+        return {road: self.survey.store.span(road) for road in self.survey.store.roads()}
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """Expected local z of the road at (N,) stations, (N,) m."""
@@ -294,14 +290,9 @@ class LayerScanlines:
         typical = float(np.median(list(heights.values()))) if heights else READING.default_sensor_height
         return {p.number: heights.get(p.number, typical) for p in self.frame.passes}
 
-    def roads(self) -> list[int]:
-        """Numbers of the roads."""
-        return list(self.lines)
-
-    def span(self, road: int) -> tuple[float, float]:
-        """Stations at which a road begins and ends, m."""
-        stations = self.lines[road].station
-        return float(stations[0]), float(stations[-1])
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """{number of a road: stations at which it begins and ends, m}"""
+        return {road: (float(lines.station[0]), float(lines.station[-1])) for road, lines in self.lines.items()}
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """Expected local z of the road at (N,) stations, (N,) m."""
