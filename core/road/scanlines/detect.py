@@ -28,6 +28,7 @@ from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
+from ..common.pseudo_scanlines import nearest_distance
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
 from ..common.tracking import without_outliers
@@ -38,7 +39,7 @@ from ..surface.road_look import RoadLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
-from .grid import LINE_SEPARATION, Scanlines, height_grid, nearest_distance
+from .grid import LINE_SEPARATION, Scanlines, height_grid
 from .section_planes import ScanlineSettings, scanline_runs
 
 

@@ -141,15 +141,6 @@ def row_of_lines(lines: Scanlines, rows: tuple[int, int], interval: float) -> np
     return np.rint(lines.station / interval).astype(np.int64) - rows[0]
 
 
-def nearest_distance(wanted: np.ndarray, keys: np.ndarray) -> np.ndarray:
-    """(M,) distance of each number from the nearest of (K,) keys, infinite where there is none."""
-    if not len(keys):
-        return np.full(len(wanted), np.inf)
-    keys = np.sort(keys)
-    right = np.searchsorted(keys, wanted)
-    return np.minimum(*(np.abs(keys[np.clip(k, 0, len(keys) - 1)] - wanted) for k in (right - 1, right)))
-
-
 # Normalized scanlines: sections of the measured surface by planes across the road, as polylines in the road frame.
 
 @dataclass

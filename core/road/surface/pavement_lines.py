@@ -18,6 +18,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.open_survey import Survey
+from ..common.pseudo_scanlines import nearest_distance
 from ..common.tracking import GapLine
 from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
@@ -99,17 +100,10 @@ def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
                 drawn_lines[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
         # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
         crossings = np.concatenate([np.empty(0), *(drawn_lines[runs][1] for runs in lines)])
-        crossing = rows & (_distance(stations, crossings) <= SURFACE.agreeing_length)
+        crossing = rows & (nearest_distance(stations, crossings) <= SURFACE.agreeing_length)
         if not crossing.any():
             return [drawn_lines[runs][0] for runs in lines]
         rows = rows & ~crossing
-
-
-def _distance(places, others):
-    """(N,) m from each of (N,) places to the nearest of others, infinite where there are none."""
-    around = np.r_[-np.inf, np.sort(others), np.inf]
-    after = np.searchsorted(around, places)
-    return np.minimum(places - around[after - 1], around[after] - places)
 
 
 def _crossings(piece, curb_lines):
