@@ -85,15 +85,15 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
+    if settings.method == "profiles":
+        return {"profiles": detect_curbs(survey, settings.curbs, progress, ground)}
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
         return _find_curb_points(decimation, settings, progress, ground or MeasuredGround(survey))
 
 
 def _find_curb_points(decimation, settings, progress, ground):
-    """`find_curb_points` with the points of a PointDecimation."""
+    """`find_curb_points` of scanlines, or of both methods, with the points of a PointDecimation."""
     survey = decimation.survey
-    if settings.method == "profiles":
-        return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
     lattice = find_lattice(survey, settings.planes.rotation_frequency, progress.part(0.0, BOUNDARY.lattice_progress))
     source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
                              decimation=decimation if settings.method == "both" else None)

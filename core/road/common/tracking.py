@@ -223,11 +223,13 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Calla
         check_cancelled()
         paths.lead_on(a, b)
     last = paths.path[int(np.argmax(paths.value))] if len(chains) else None
-    selected = []
+    selected: list[tuple[int, float, float]] = []
     while last:
-        selected.append(last[:3])
-        last = last[3]
-    return _continued(_merged(selected[::-1]), chains, steps)
+        chain, a, b, last = last
+        # adjacent intervals of one chain are one
+        goes_on = selected and selected[-1][:2] == (chain, b)
+        selected.append((chain, a, selected.pop()[2] if goes_on else b))
+    return _continued(selected[::-1], chains, steps)
 
 
 class _Paths:
@@ -403,17 +405,6 @@ def _chain_scatter(s, u):
         return 0.0
     f = (s[1:-1] - s[:-2]) / np.maximum(s[2:] - s[:-2], 1e-6)
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
-
-
-def _merged(path):
-    """Adjacent intervals of one chain joined."""
-    merged = []
-    for chain, a, b in path:
-        if merged and merged[-1][0] == chain and merged[-1][2] == a:
-            merged[-1] = (chain, merged[-1][1], b)
-        else:
-            merged.append((chain, a, b))
-    return merged
 
 
 # Short pieces of curb in line with the curb before and after them.

@@ -32,7 +32,7 @@ from ..common.pseudo_scanlines import nearest_distance
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
 from ..common.tracking import without_outliers
-from ..edges.fit import EdgeCurve, point_table
+from ..edges.fit import EdgeCurve, point_table, stretches_of
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
@@ -191,16 +191,9 @@ def _pieces(points, hidden, max_gap):
 def _draw(pieces, points, status, passes, **fields):
     """Add the pieces of one line."""
     curve = EdgeCurve(points)
-    bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
-    for i, j in zip(bounds[:-1], bounds[1:]):
-        a, b = curve.t[i], curve.t[j]
-        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
-        vertices, rows = curve.at(along), points[i:j + 1]
-        pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
-                                height=float(np.median(rows["height"])),
-                                rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                                sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes)),
-                                **fields))
+    for i, along, known in stretches_of(points, curve.t, curve.residual, status[1:] != status[:-1]):
+        sigma = edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes))
+        pieces.append(EdgePiece(curve.at(along), status=str(status[i]), sigma=sigma, **known, **fields))
 
 
 # Sources of normalized scanlines: sections of a survey, computed on demand, or a layer.

@@ -96,6 +96,12 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     return np.squeeze(0.5 * (low + high), axis)
 
 
+def median_about(values: np.ndarray, reach: int) -> np.ndarray:
+    """`known_median` of the rows from `reach` before to `reach` behind each one; of one shape with `values`, (R, ...) floats."""
+    padded = np.pad(values, [(reach, reach), *[(0, 0)] * (values.ndim - 1)], constant_values=np.nan)
+    return known_median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0), -1)
+
+
 def _ground_columns(column_size: float) -> int:
     """Columns of ground cells on either side of the reference line."""
     return int(np.ceil(FRAME.corridor / column_size))
