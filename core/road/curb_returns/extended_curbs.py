@@ -348,8 +348,9 @@ class FollowedEnds(Rows):
         """
         long = np.flatnonzero([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= RETURN.line_direction_length for x, y, _ in lines])
         ends, line = LineEnds.of([lines[k] for k in long], RETURN.line_direction_length), np.tile(long, 2)
-        return cls(*np.concatenate([ends.tails, ends.heads]).T, np.repeat([1.0, -1.0], len(long)),
-                   np.full(len(line), np.nan) if heights is None else np.asarray(heights, float)[line], line)
+        x, y, h, tx, ty = np.concatenate([ends.tails, ends.heads]).T
+        height = np.full(len(line), np.nan) if heights is None else np.asarray(heights, float)[line]
+        return cls(x, y, h, tx, ty, np.repeat([1.0, -1.0], len(long)), height, line)
 
     @classmethod
     def of_chains(cls, chains: Sequence[PlanStepChain], steps: PlanSteps) -> FollowedEnds:
