@@ -3,8 +3,7 @@
 from qgis.core import QgsApplication
 
 from . import add_library_folders
-from .processing_provider.provider import LanewrightProvider
-from .processing_provider.task_threads import keep_task_threads
+from .processing_provider.provider import LanewrightProvider, keep_task_threads
 from .processing_provider.texts import speak
 
 

@@ -34,7 +34,8 @@ setup(
                                                                                          for pattern in (name, f"{name}.*")])],
     package_data={"lanewright.products.report": ["templates/*.html"], "lanewright.core.survey.trajectory": ["column_names.txt"],
                   "lanewright.core.common": ["words.txt"], "lanewright.core.countries": ["countries.json", "traffic_sides.txt"],
-                  "lanewright.algorithms": ["help.txt"], "lanewright.products.export.check": ["faults.txt"],
+                  "lanewright.algorithms": ["help.txt"], "lanewright.products.export": ["templates/*.xml"],
+                  "lanewright.products.export.check": ["faults.txt", "words.txt"], "lanewright.products.overlay": ["column_names.txt"],
                   "lanewright": ["resources/i18n/*.json", "resources/templates/*.csv"]},
     # build/ is that of the checkout
     options={"build": {"build_base": "build/package"}},

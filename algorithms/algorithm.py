@@ -7,6 +7,7 @@ implements `work(call, progress)`; `call` (see call.py) hands it the values.
 from __future__ import annotations
 
 import re
+from collections import namedtuple
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from typing import Any
@@ -22,7 +23,8 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`; their help stands in help.txt.
+    """Base of every algorithm. Subclasses set the texts below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
+    which returns further results (numbers) by output name; their help stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
@@ -40,14 +42,6 @@ class Algorithm:
         self.parameters = []
         self.declare()
         self.numbers = [NumberOutput(name, tr(label)) for name, label in (*self.NUMBERS, (WARNINGS, tr("Warnings")))]
-
-    def declare(self):
-        """Add the parameters and outputs."""
-        raise NotImplementedError
-
-    def work(self, call, progress):
-        """Do the work; returns further results (numbers) by output name."""
-        raise NotImplementedError
 
     # -- what others ask --------------------------------------------------------------------
 
@@ -239,12 +233,7 @@ def settings_of(table, settings, names, **further):
             tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
 
 
-@dataclass(frozen=True)
-class NumberOutput:
-    """A number among the results."""
-
-    name: str
-    label: str
+NumberOutput = namedtuple("NumberOutput", "name label")   # a number among the results
 
 
 def number_refused(label, name, value, least, most):

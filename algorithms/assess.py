@@ -219,18 +219,21 @@ def _boundary_numbers(accuracy):
     tolerance = accuracy.settings.tolerance
     total = accuracy.total[tolerance]
     numbers = {
-        "PRECISION": 100 * total.rates.precision, "RECALL": 100 * total.rates.recall, "F1": 100 * total.rates.f1, "IOU": 100 * total.rates.iou,
-        "CORRECT": total.rates.right, "MISSED": total.rates.missed, "FALSE": total.rates.false,
-        "EXCLUDED_INTERVALS": (accuracy.intervals.excluded != "").sum(),
-        "MEAN": total.lateral.mean, "RMSE": total.lateral.rmse, "P95": total.lateral.p95, "MAXIMUM": total.lateral.maximum,
-        "HEIGHT_MEAN": total.height.mean, "HEIGHT_RMSE": total.height.rmse, "HEIGHT_P95": total.height.p95, "HEIGHT_MAXIMUM": total.height.maximum,
+        **_shares(total.rates, "precision recall f1 iou"), "CORRECT": total.rates.right, "MISSED": total.rates.missed, "FALSE": total.rates.false,
+        "EXCLUDED_INTERVALS": (accuracy.intervals.excluded != "").sum(), **_errors(total.lateral), **_errors(total.height, "HEIGHT_"),
     }
     for side in ("left", "right"):
         if side in accuracy.by_side:
-            rates = accuracy.by_side[side][tolerance].rates
-            shares = {"PRECISION": rates.precision, "RECALL": rates.recall, "F1": rates.f1}
-            numbers |= {f"{name}_{side.upper()}": 100 * share for name, share in shares.items()}
+            numbers |= _shares(accuracy.by_side[side][tolerance].rates, after=f"_{side.upper()}")
     return numbers
+
+
+def _shares(rates, names="precision recall f1", before="", after=""):
+    return {f"{before}{name.upper()}{after}": 100 * getattr(rates, name) for name in names.split()}
+
+
+def _errors(errors, before=""):
+    return {f"{before}{name.upper()}": getattr(errors, name) for name in ("mean", "rmse", "p95", "maximum")}
 
 
 MARKINGS = "products.assess.markings:MarkingAccuracySettings"
@@ -313,13 +316,9 @@ class AssessMarkings(Algorithm):
 
 
 def _marking_numbers(accuracy):
-    strict, tolerant, objects = accuracy.strict, accuracy.tolerant, accuracy.objects
-    return {
-        "PRECISION": 100 * strict.precision, "RECALL": 100 * strict.recall, "F1": 100 * strict.f1, "IOU": 100 * strict.iou,
-        "PRECISION_TOLERANT": 100 * tolerant.precision, "RECALL_TOLERANT": 100 * tolerant.recall, "F1_TOLERANT": 100 * tolerant.f1,
-        "OBJECT_PRECISION": 100 * objects.precision, "OBJECT_RECALL": 100 * objects.recall, "OBJECT_F1": 100 * objects.f1,
-        "HITS": strict.right, "MISSES": strict.missed, "FALSE_ALARMS": strict.false,
-    }
+    strict = accuracy.strict
+    return {**_shares(strict, "precision recall f1 iou"), **_shares(accuracy.tolerant, after="_TOLERANT"),
+            **_shares(accuracy.objects, before="OBJECT_"), "HITS": strict.right, "MISSES": strict.missed, "FALSE_ALARMS": strict.false}
 
 
 LINES = "products.assess.lines:LineAccuracySettings"
@@ -400,8 +399,7 @@ def _line_numbers(accuracy, tolerance):
         "COMPLETENESS": complete, "CORRECTNESS": correct,
         "QUALITY": 100 * accuracy.quality[tolerance], "MISCODING": 100 * accuracy.miscoding[tolerance],
         "PRECISION": correct, "RECALL": complete, "F1": f1_of(correct if accuracy.result_length else 0.0, complete),
-        "MEAN": accuracy.lateral.mean, "RMSE": accuracy.lateral.rmse,
-        "P95": accuracy.lateral.p95, "MAXIMUM": accuracy.lateral.maximum, "HEIGHT_RMSE": accuracy.height.rmse,
+        **_errors(accuracy.lateral), "HEIGHT_RMSE": accuracy.height.rmse,
         "GAPS_PER_KM": accuracy.gaps_per_km[tolerance], "MEAN_GAP": accuracy.mean_gap[tolerance],
         "RESULT_LENGTH": accuracy.result_length, "REFERENCE_LENGTH": accuracy.reference_length,
     }

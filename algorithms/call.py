@@ -13,12 +13,13 @@ from pathlib import Path
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_memory, out_of_memory
 from ..core.common.progress import RememberedMessages
+from ..core.io.local_files import gdal_exceptions, open_raster
 from ..core.lazy import gdal
 from .algorithm import WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .map_layers import MAP_LAYERS
 from .provenance import provenance_now, run_facts, sign_file, sign_report
-from .survey_files import cloud_files, survey_name
+from .survey_files import cloud_files, read_trajectory_source, survey_name, trajectory_path
 from .texts import tr
 from .vector_source import in_file_units, read_features
 
@@ -105,8 +106,6 @@ class Call:
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
-        from .survey_files import read_trajectory_source, trajectory_path
-
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory
@@ -125,7 +124,6 @@ class Call:
             return None
 
         from ..core.io.crs import parse_crs, place_of_raster, same_crs
-        from ..core.io.local_files import gdal_exceptions, open_raster
 
         path = self.raster(name)
         with gdal_exceptions():
@@ -187,8 +185,8 @@ class Call:
             target = str(path.absolute()) if value == str(path) else value
             if target in label_by_target:
                 raise RoadExtractionError(
-                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
-                       "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
+                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each its own file, "
+                       "or a table of one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
                         first=label_by_target[target], second=spec.label, path=path))
             label_by_target[target] = spec.label
             check_writable(path, spec.label)

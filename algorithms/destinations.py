@@ -58,28 +58,19 @@ def at_path(value, path):
 
 def check_suffix(path, spec, vector_suffixes):
     """Raise RoadExtractionError where the name promises a kind of file that is not written; suffixes of vector formats have no dot."""
-    if spec.kind == "layer":
-        _check_vector_suffix(path, spec.label, vector_suffixes)
-        return
-    kinds = spec.suffixes or SUFFIXES[spec.kind]
-    name = path.name.lower()
-    if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
+    name, suffix, kinds = path.name.lower(), path.suffix.lower().lstrip("."), spec.suffixes or SUFFIXES.get(spec.kind, ())
+    if spec.kind == "layer" and suffix == "dxf":
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
+               "QGIS algorithm “Export layers to DXF”.").format(label=spec.label, path=path))
+    if spec.kind == "layer" and suffix not in vector_suffixes:
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.").format(
+                label=spec.label, path=path))
+    if spec.kind != "layer" and (not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las"))):
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.").format(
                 label=spec.label, path=path, kinds=tr(" or ").join(kinds)))
-
-
-def _check_vector_suffix(path, label, suffixes):
-    """Layers need a format that is written and that has fields."""
-    suffix = path.suffix.lower().lstrip(".")
-    if suffix == "dxf":
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
-               "QGIS algorithm “Export layers to DXF”.").format(label=label, path=path))
-    if suffix not in suffixes:
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.").format(
-                label=label, path=path))
 
 
 def check_writable(path, label):
@@ -176,7 +167,9 @@ def _give_place(folder, destination):
     parts = sorted({*folder.iterdir()} - {statistics}, key=lambda part: part.name == destination.name)
     previous = files_of(destination)
     if destination in previous and len(previous) > 1 and destination.suffix.lower() != ".shp":
-        _settle(destination)
+        with _opened(destination) as database:   # what its journal holds goes into it: one that outlives its database is played into the next
+            database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+            database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     if len(parts) > 1:
         destination.unlink(missing_ok=True)
     for part in parts + [statistics] * statistics.exists():
@@ -193,13 +186,6 @@ def _is_held(path):
     except PermissionError:
         return path.suffix.lower() == ".gpkg"
     return False
-
-
-def _settle(path):
-    """Bring what the journal of a database holds into it; one that outlives its database is played into the next of that name."""
-    with _opened(path) as database:
-        database.execute("SELECT count(*) FROM sqlite_master").fetchone()
-        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
 
 
 @contextmanager

@@ -106,32 +106,23 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
     numbers: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
     for layer, length, share in ((edges, "EDGE_LENGTH", "EDGES_MEASURED"), (marking_lines, "LINE_LENGTH", "LINES_MEASURED"),
                                  (driving_lines, "LANE_LENGTH", "LANES_MEASURED")):
-        numbers[length], numbers[share] = _measured(layer)
+        numbers[length], numbers[share] = _along(layer, lambda row: 100.0 * (row.get("status") == MEASURED))
     lanes = [] if driving_lines is None else driving_lines.rows
     numbers["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
     numbers["MARKING_COUNT"] = float(0 if markings is None else len(markings))
-    numbers["TRUST"] = _trust(driving_lines)
+    _, numbers["TRUST"] = _along(driving_lines, lambda row: row.get("confidence"))
     unmatched = 0 if corrections is None else len({correction.row for correction in corrections.unmatched})
     made = 0 if corrections is None else len({correction.row for correction in corrections.rows}) - unmatched
     numbers["CORRECTIONS_MADE"], numbers["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
     return {name: round(value, 3) for name, value in numbers.items() if value is not None}
 
 
-def _trust(layer):
-    """Mean confidence of lines by their lengths, None without lines."""
-    pieces = [] if layer is None else [(geometry.length, row.get("confidence")) for geometry, row in layer]
-    rated = [(length, sure) for length, sure in pieces if sure is not None]
+def _along(layer, value_of):
+    """(m of all lines of a layer, mean of a value of their rows by length), the mean None where no row has one."""
+    pieces = [] if layer is None else [(geometry.length, value_of(row)) for geometry, row in layer]
+    rated = [(length, value) for length, value in pieces if value is not None]
     total = sum(length for length, _ in rated)
-    return sum(length * sure for length, sure in rated) / total if total else None
-
-
-def _measured(layer):
-    """(m of all lines, percent of them measured or None)."""
-    if layer is None:
-        return 0.0, None
-    lengths = [(geometry.length, row.get("status")) for geometry, row in layer]
-    total = sum(length for length, _ in lengths)
-    return total, 100.0 * sum(length for length, status in lengths if status == MEASURED) / total if total else None
+    return float(sum(length for length, _ in pieces)), sum(length * value for length, value in rated) / total if total else None
 
 
 # Field of RoadMapSettings -> its settings

@@ -177,10 +177,7 @@ def _control_points(call, image, progress):
         raise RoadExtractionError(
             tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
             tr("There are no control points. Choose a layer, or a .points or CSV file."))
-    if path:
-        points = read_control_points(path, image, crs)
-    else:
-        points = read_control_point_layer(source, image, crs)
+    points = read_control_points(path, image, crs) if path else read_control_point_layer(source, image, crs)
     if crs and not same_crs(parse_crs(crs), parse_crs(points.crs)):
         progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
             own=horizontal_part(parse_crs(points.crs)).name))

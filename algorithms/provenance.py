@@ -12,7 +12,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..core.common.errors import RoadExtractionError
 from ..core.common.texts import told
+from ..core.io.local_files import gdal_exceptions, open_raster
 from ..core.lazy import gdal
 from .texts import tr
 
@@ -120,9 +122,6 @@ def signed_by(path: str | os.PathLike[str]) -> Provenance | None:
     """The provenance that `sign_file` wrote into a GeoTIFF; None where a file is none, or not ours."""
     if Path(path).suffix.lower() not in (".tif", ".tiff") or not Path(path).is_file():
         return None
-    from ..core.common.errors import RoadExtractionError
-    from ..core.io.local_files import gdal_exceptions, open_raster
-
     try:
         with gdal_exceptions():
             tags = open_raster(path).GetMetadata()
@@ -156,8 +155,6 @@ def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
 
 
 def _sign_raster(path, provenance):
-    from ..core.io.local_files import gdal_exceptions
-
     with gdal_exceptions():
         raster = gdal.Open(str(path), gdal.GA_Update)
         for name, text in {"TIFFTAG_SOFTWARE": provenance.program, "TIFFTAG_DATETIME": provenance.ended.strftime("%Y:%m:%d %H:%M:%S"),
@@ -202,10 +199,13 @@ def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str
 
     Names of files are without their folders, since a report is handed on.
     """
+    from ..core.io.crs import parse_crs
+
     files = [Path(path).name for path in clouds]
     named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more").format(count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
-    facts = [(tr("Survey"), survey), (tr("Point clouds"), named), *_inputs(algorithm, provenance.values), (tr("CRS"), _crs_name(crs)),
-             (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"), (tr("Settings"), _settings(algorithm, provenance.values)),
+    facts = [(tr("Survey"), survey), (tr("Point clouds"), named), *_inputs(algorithm, provenance.values),
+             (tr("CRS"), parse_crs(crs).name if crs else ""), (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"),
+             (tr("Settings"), _settings(algorithm, provenance.values)),
              *((tr("Warning"), told(text)) for text in provenance.warnings)]
     return [(name, value) for name, value in facts if value]
 
@@ -223,9 +223,3 @@ def _settings(algorithm, values):
     changed = [f"{spec.label}: {values[spec.name]}" for spec in algorithm.inputs()
                if hasattr(spec, "field") and spec.name in values and values[spec.name] not in (None, "", spec.default)]
     return "; ".join(changed) or tr("as they are by default")
-
-
-def _crs_name(wkt):
-    from ..core.io.crs import parse_crs
-
-    return parse_crs(wkt).name if wkt else ""

@@ -43,8 +43,8 @@ class ImportTrajectory(Algorithm):
         for doubt in trajectory.doubts:
             progress.warn(doubt)
         if not trajectory.crs:
-            progress.warn(tr("The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or "
-                             "CRS to bring it to where the coordinates are in that of the point clouds."))
+            progress.warn(tr("The trajectory names no CRS and none was given. Set CRS of the trajectory, or, where its coordinates are those of the "
+                             "point clouds, CRS to bring it to."))
         progress.info(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
         call.layer("OUTPUT", trajectory_features(trajectory))
         return {"ROWS": len(trajectory)}

@@ -159,9 +159,8 @@ def bright_road_points_of(call, name, progress):
     values = [(section.min(), section.max()) for section in sections if len(section)]
     if values and min(low for low, _ in values) == max(high for _, high in values):
         raise RoadExtractionError(
-            tr("{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface "
-               "need none; for markings, export the point clouds with intensity, or, where they have colours, make these points again "
-               "with Intensity from (INTENSITY_FROM) set to rgb.").format(path=call.cloud(name)))
+            tr("{path} has no intensity (all values are the same), so it shows no paint. Export the point clouds with intensity, or make the points "
+               "again with INTENSITY_FROM set to rgb.").format(path=call.cloud(name)))
     return road_points
 
 

@@ -94,7 +94,11 @@ def read_features(source, schema, geometry_type):
     field that is needed is missing, the geometry is of another kind, or carries no heights.
     """
     indices = _columns(source, schema)
-    _check_kind(source, geometry_type)
+    needed = KIND_OF[geometry_type]
+    if geometry_type != "None" and source.kind != needed:   # a layer that another stage made
+        raise RoadExtractionError(
+            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
+                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
     measured = geometry_type.endswith("ZM")
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
@@ -130,15 +134,6 @@ def _columns(source, schema):
             tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
                 label=source.label, fields=", ".join(missing)))
     return indices
-
-
-def _check_kind(source, geometry_type):
-    """Refuse a layer that another stage made."""
-    needed = KIND_OF[geometry_type]
-    if geometry_type != "None" and source.kind != needed:
-        raise RoadExtractionError(
-            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
 
 
 def _measured_parts(wkb, label):

@@ -12,8 +12,8 @@ PUBLIC = {
     "survey.survey": ("Survey", "SurveySettings"),   # points of all sections in the road frame, and how they are read
     "survey.weights": ("LAS", "READING", "TRAJECTORY"),   # the numbers by which clouds and trajectories are read
     "survey.open_survey": ("match_clocks",),   # shift between the clocks of clouds and trajectory
-    "survey.blocks": ("sensor_height_of", "unwrap_week"),   # sensor above the road; times beyond the end of a week
-    "survey.trajectory.time_systems": ("SECONDS_PER_WEEK",),
+    "survey.blocks": ("sensor_height_of",),   # sensor above the road
+    "survey.trajectory.time_systems": ("SECONDS_PER_WEEK", "unwrap_week"),   # times beyond the end of a week
     "survey.trajectory.trajectory": ("Trajectory", "clean_trajectory", "reproject_trajectory"),   # positions of the vehicle
     "survey.estimation.estimate": ("EstimatedTrajectory", "WAYS"),   # the trajectory from the clouds alone
     "survey.frame.road_frame": ("RoadFrame", "build_frame"),   # station, offset and height along roads

@@ -1,10 +1,10 @@
-"""An algorithm run in the background, shown and cancelled by QGIS's task manager; the sample survey through the whole chain."""
+"""What runs in the background, shown and cancelled by QGIS's task manager: an algorithm, a look at points, the sample survey."""
 
 from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,14 @@ from qgis.core import (
     QgsProcessingFeedback,
     QgsProcessingOutputLayerDefinition,
     QgsProject,
+    QgsTask,
 )
 
 from ..algorithms.destinations import table_of
-from ..processing_provider.texts import tr
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.parallel import cancellation_scope
+from ..core.common.progress import Progress
+from ..processing_provider.texts import told, tr
 from .widgets import say
 
 
@@ -56,6 +60,49 @@ class BackgroundRun:
     def reason(self) -> str:
         """What the log said last: why the run failed."""
         return (self.feedback.textLog().strip().splitlines() or [tr("cancelled")])[-1]
+
+
+def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radius: float, work: Callable[[Any], object],
+                ready: Callable[[QgsTask, object, str], None]) -> QgsTask:
+    """Read the points about a place and work on them; keep the task, for QGIS keeps no reference, and cancel it when it is no longer wanted.
+
+    place, radius : x, y in map coordinates, and m either side
+    work : from (N, 4) x, y, z and intensity to a result
+    ready : called on the main thread with the task, the result and ""; with None and a sentence where the points were not read
+    """
+    def ended(error, result=None):
+        problem = told(str(error)) if isinstance(error, RoadExtractionError) else tr("No points were read.") if result is None else ""
+        ready(task, None if result is None else result["result"], problem)
+
+    # silent: a message about its end would lie on the map where the next click goes
+    task = QgsTask.fromFunction(title, _worked, clouds, place, radius, work, on_finished=ended, flags=QgsTask.Flag.CanCancel | QgsTask.Flag.Silent)
+    QgsApplication.taskManager().addTask(task)
+    return task
+
+
+class _TaskProgress(Progress):
+    def __init__(self, task):
+        self.task = task
+
+    def report(self, fraction):
+        self.check_cancelled()
+        self.task.setProgress(100.0 * fraction)
+
+    def check_cancelled(self):
+        if self.task.isCanceled():
+            raise Cancelled
+
+
+def _worked(task, clouds, place, radius, work):
+    """What the background does: the result of the work, None where it is no longer wanted."""
+    from ..core.survey.las.near import points_near
+
+    progress = _TaskProgress(task)
+    try:
+        with cancellation_scope(progress):
+            return {"result": work(points_near(clouds, *place, radius, progress))}  # QGIS asks whether it is empty, which an array refuses to say
+    except Cancelled:
+        return None
 
 
 # The sample survey through the whole chain, in the background, into the project.

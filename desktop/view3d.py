@@ -35,8 +35,7 @@ from qgis.PyQt.QtGui import QColor
 
 from ..core.common.errors import RoadExtractionError
 from ..core.survey.las.reader import read_blocks
-from ..processing_provider.results.origin import output_of
-from ..processing_provider.results.road_maps import RoadMap, clouds_of
+from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.texts import tr
 
 STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"

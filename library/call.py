@@ -9,8 +9,7 @@ from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import gdal_exceptions, open_raster
-from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
-from .measured_lines import check_format, check_gdal
+from .layer_files import DRIVERS, LayerFile, check_format, check_gdal, file_and_table, first_table, write_layer
 from .values import checked_values
 
 

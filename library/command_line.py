@@ -16,8 +16,8 @@ from ..algorithms.provenance import own_version
 from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress, RemainingTime
+from . import algorithm_named, algorithms, speak
 from .call import FileCall
-from .run import algorithm_named, algorithms, speak
 
 # What a value looks like in the help
 METAVARS = {"layer": "LAYER", "folder": "FOLDER", "crs": "EPSG:NUMBER", "flag": "true|false", "expression": "CONDITION", "text": "TEXT",
@@ -82,12 +82,9 @@ def _main(arguments, as_json):
     elif first == "list":
         print("\n".join(f"{algorithm.ID:24}{algorithm.summary()}" for algorithm in algorithms().values()))
     else:
-        _run(algorithm_named(first), options, as_json)
+        algorithm = algorithm_named(first)
+        _run_with(algorithm, {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}, as_json)
     return 0
-
-
-def _run(algorithm, options, as_json):
-    _run_with(algorithm, {name: value for name, value in vars(parser_of(algorithm).parse_args(options)).items() if value is not None}, as_json)
 
 
 def demo(options, as_json):

@@ -1,19 +1,19 @@
-"""Vector files without QGIS: layers read and written by fiona."""
+"""Vector files without QGIS: layers read and written by fiona, lines with measures (M), which it leaves out, by GDAL's own Python module."""
 
 import logging
-from contextlib import contextmanager
+import sqlite3
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from ..algorithms.destinations import package_and_table
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
+from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
-from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson
-from ..core.lazy import fiona, np, shapely
-from . import measured_lines
+from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson, gdal_exceptions, open_vector
+from ..core.lazy import fiona, gdal, np, ogr, osr, shapely
 
 DRIVERS = {"gpkg": "GPKG", "fgb": "FlatGeobuf", "shp": "ESRI Shapefile", "geojson": "GeoJSON"}
-GEOMETRIES = {"PointZ": "3D Point", "LineStringZ": "3D LineString", "PolygonZ": "3D Polygon", "MultiLineStringZ": "3D MultiLineString",
-              "MultiPolygonZ": "3D MultiPolygon", "None": "None"}
+GEOMETRIES = {name: name if name == "None" else f"3D {name[:-1]}" for name in KIND_OF}   # fiona has none with measures
 KINDS = {"Point": POINT, "LineString": LINE, "Polygon": POLYGON, "None": TABLE}
 COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
 
@@ -79,22 +79,19 @@ class LayerFile(VectorSource):
                 geometry = layer.schema["geometry"]
                 self.stored_crs = _crs_text(layer.crs_wkt)
                 if layer.driver == "GeoJSON":
-                    self._check_crs()
+                    with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as native:
+                        check_crs_of_geojson(self.path, native.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
         except (*_fiona_errors(), ValueError) as problem:
             raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
         plain = geometry.replace("3D ", "").replace("Multi", "")
         self.kind = KINDS.get(plain, UNKNOWN)
         self.has_z = geometry.startswith("3D")
         # fiona leaves measures out
-        self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
-
-    def _check_crs(self):
-        with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as layer:
-            check_crs_of_geojson(self.path, layer.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
+        self.has_m = self.kind == LINE and self.has_z and _may_have_measures(self.path, self.table)
 
     def stored_rows(self, measures=False, check_validity=True):
         if measures and self.has_m:
-            for number, wkb, values in measured_lines.rows(self.path, self.table, self.names, self.label):
+            for number, wkb, values in _measured_rows(self.path, self.table, self.names, self.label):
                 self.feature_id = number
                 yield wkb, values
             return
@@ -153,9 +150,7 @@ def _crs_text(wkt):
     """WKT, "" for the entries that GeoPackage has for layers without a CRS."""
     from ..core.io.crs import parse_crs
 
-    if not wkt or parse_crs(wkt).name.lower().startswith("undefined "):
-        return ""
-    return wkt
+    return wkt if wkt and not parse_crs(wkt).name.lower().startswith("undefined ") else ""
 
 
 def write_layer(path, table, features, check_cancelled):
@@ -164,12 +159,11 @@ def write_layer(path, table, features, check_cancelled):
     `check_cancelled` is called now and then and may raise Cancelled.
     """
     if features.geometry_type.endswith("ZM"):
-        measured_lines.write(path, table, features, check_cancelled)
+        _write_measured(path, table, features, check_cancelled)
         return
 
     driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
-    schema = {"geometry": GEOMETRIES[features.geometry_type],
-              "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
+    schema = {"geometry": GEOMETRIES[features.geometry_type], "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
     options = {"layer": table or Path(path).stem, "description": features.description} if driver == "GPKG" else {}
     if wkt := crs_to_write(features, driver):
         options["crs_wkt"] = wkt
@@ -189,3 +183,79 @@ def _records_of(features, check_cancelled):
             check_cancelled()
         yield {"geometry": None if geometry is None else mapping(geometry),
                "properties": {name: plain_value(row.get(name)) for name in names}}
+
+
+# Lines with measures.
+
+MEASURED = {".gpkg": "GPKG", ".shp": "ESRI Shapefile"}  # formats that keep measures
+
+
+def check_gdal(why):
+    """Raise RoadExtractionError, with what to install, where GDAL's Python module is missing; `why` it is needed begins the sentence."""
+    if find_spec("osgeo") is None:
+        raise RoadExtractionError(
+            f"{why[0].upper()}{why[1:]}, which needs GDAL's Python module (osgeo), and it is not installed. Install lanewright[gdal] with pip, gdal "
+            "from conda-forge, or python3-gdal on Debian and Ubuntu.")
+
+
+def _may_have_measures(path, table):
+    """Whether a layer of lines has measures; where GDAL's Python module is missing, also True where nobody can tell."""
+    if find_spec("osgeo") is not None:
+        dataset = open_vector(path)
+        layer = None if dataset is None else dataset.GetLayerByName(table)
+        return layer is not None and bool(ogr.GT_HasM(layer.GetGeomType()))
+    suffix = Path(path).suffix.lower()
+    if suffix == ".gpkg":
+        with closing(sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)) as database:
+            row = database.execute("SELECT m FROM gpkg_geometry_columns WHERE table_name = ?", (table,)).fetchone()
+        return bool(row and row[0])
+    return suffix not in (".geojson", ".json")
+
+
+def check_format(path, label):
+    """Raise RoadExtractionError, before the work, where lines with measures cannot be written to a file."""
+    check_gdal(f"{label} are lines with measures")
+    if Path(path).suffix.lower() not in MEASURED:
+        raise RoadExtractionError(f"{label} was to be written to {path}, but they are lines with measures. Write a GeoPackage (.gpkg).")
+
+
+def _measured_rows(path, table, names, label):
+    """(feature id, ISO WKB or None, values) of every row, as VectorSource gives them."""
+    check_gdal(f"{label} has lines with measures")
+
+    dataset = open_vector(path)
+    layer = dataset.GetLayerByName(table)
+    for feature in layer:
+        geometry = feature.GetGeometryRef()
+        wkb = None if geometry is None or geometry.IsEmpty() else bytes(geometry.ExportToIsoWkb(ogr.wkbNDR))
+        yield feature.GetFID(), wkb, [feature.GetField(name) for name in names]
+
+
+def _write_measured(path, table, features, check_cancelled):
+    """A layer of lines with Z and M into a new file, or as a table of a GeoPackage."""
+    suffix = Path(path).suffix.lower()
+    types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
+    with gdal_exceptions():
+        crs = None
+        if wkt := crs_to_write(features, MEASURED[suffix]):
+            crs = osr.SpatialReference()
+            crs.SetFromUserInput(wkt)
+            crs.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        dataset = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_UPDATE) if Path(path).exists() else \
+            ogr.GetDriverByName(MEASURED[suffix]).CreateDataSource(path)
+        layer = dataset.CreateLayer(table or Path(path).stem, crs, ogr.wkbLineStringZM, ["OVERWRITE=YES"] if suffix == ".gpkg" else [])
+        for field in features.schema:
+            layer.CreateField(ogr.FieldDefn(field.name, types[field.type]))
+        layer.StartTransaction()
+        for number, (wkb, row) in enumerate(features):
+            if number % 5000 == 0:
+                check_cancelled()
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetGeometry(ogr.CreateGeometryFromWkb(wkb))
+            for field in features.schema:
+                value = plain_value(row.get(field.name))
+                if value is not None:
+                    feature.SetField(field.name, value)
+            layer.CreateFeature(feature)
+        layer.CommitTransaction()
+        del layer, dataset

@@ -19,6 +19,7 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.algorithm import choice_refused, number_refused
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
+from ..algorithms.survey_files import trajectory_path
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
@@ -190,8 +191,6 @@ def out_of_range(definitions, parameters):
 
 def no_trajectory(declaration, parameters):
     """What may be given where a file is there and no trajectory; QGIS itself says that it is not found."""
-    from ..algorithms.survey_files import trajectory_path
-
     for spec in declaration.inputs():
         value = parameters.get(spec.name)
         if spec.kind == "trajectory" and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
@@ -206,8 +205,6 @@ def accept_trajectory_file(declaration, parameters, context):
 
     Such a file passes as an empty stand-in layer; whether it is there and can be read is said by the reader, in its own words.
     """
-    from ..algorithms.survey_files import trajectory_path
-
     accepted = dict(parameters)
     for spec in declaration.inputs():
         if spec.kind == "trajectory" and trajectory_path(parameters.get(spec.name)) is not None:

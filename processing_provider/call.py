@@ -108,20 +108,17 @@ class QgisCall(Call):
         text = self.value(name)  # parameterAsExpression hides a faulty one
         if not text:
             return None
-        expression = QgsExpression(text)
+        expression, holds = QgsExpression(text), []
         scope = self.processing.createExpressionContext(self.parameters, self.context, source.layer)
-        if expression.hasParserError() or not expression.prepare(scope):
-            raise RoadExtractionError(
-                tr("{label} cannot be used: {problem}").format(
-                    label=self.label(name), problem=expression.parserErrorString() or expression.evalErrorString()))
-        holds = []
-        for feature in source.layer.getFeatures():
+        usable = not expression.hasParserError() and expression.prepare(scope)
+        for feature in source.layer.getFeatures() if usable else ():
             scope.setFeature(feature)
             # of a row without geometry nothing is asked
             empty = feature.geometry().isNull() or feature.geometry().isEmpty()
             holds.append(not empty and bool(expression.evaluate(scope)))
-        if expression.hasEvalError():
-            raise RoadExtractionError(tr("{label} cannot be used: {problem}").format(label=self.label(name), problem=expression.evalErrorString()))
+        if not usable or expression.hasEvalError():
+            raise RoadExtractionError(tr("{label} cannot be used: {problem}").format(
+                label=self.label(name), problem=expression.parserErrorString() or expression.evalErrorString()))
         return holds
 
     def layer_name(self, name):
@@ -188,7 +185,12 @@ class QgisCall(Call):
         if path is not None:
             unfinished = str(self._unfinished.begin(path))
             interim, file = at_path(value, unfinished)
-            parameters = {**parameters, name: self._redirected(name, interim)}
+            output = self.parameters.get(name)
+            redirected = interim
+            if isinstance(output, QgsProcessingOutputLayerDefinition):
+                redirected = QgsProcessingOutputLayerDefinition(output)
+                redirected.sink = QgsProperty.fromValue(interim)
+            parameters = {**parameters, name: redirected}
         sink, dest = self.processing.parameterAsSink(parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs)
         if sink is None:
             raise QgsProcessingException(self.processing.invalidSinkError(self.parameters, name))
@@ -201,15 +203,6 @@ class QgisCall(Call):
         self.context.setLayersToLoadOnCompletion(
             {final if key == dest else key: details for key, details in self.context.layersToLoadOnCompletion().items()})
         return final
-
-    def _redirected(self, name, value):
-        """What was given for an output, with another destination."""
-        output = self.parameters.get(name)
-        if not isinstance(output, QgsProcessingOutputLayerDefinition):
-            return value
-        redirected = QgsProcessingOutputLayerDefinition(output)
-        redirected.sink = QgsProperty.fromValue(value)
-        return redirected
 
 
 # QGIS's progress bar and log as the listener that the core speaks to.

@@ -20,6 +20,7 @@ NEEDED = {"numpy": "numpy", "scipy": "scipy", "laspy": "laspy", "lazrs": "lazrs"
 DEBIAN = {"numpy": "python3-numpy", "scipy": "python3-scipy", "pyproj": "python3-pyproj", "cv2": "python3-opencv",
           "jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "osgeo": "python3-gdal"}
 OLDEST_SHAPELY = 2
+LIMITS = {"shapely": '"shapely>=2"', "cv2": '"opencv-python-headless<4.12"'}   # how pip is asked for these
 
 
 def missing_packages():
@@ -83,18 +84,13 @@ def install_command():
     if system:
         commands.append(f"sudo apt install {' '.join(system)}")
     if by_pip:
-        commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, by_pip))}')
+        packages = " ".join(LIMITS.get(name, NEEDED[name]) for name in by_pip)
+        commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {packages}')
     return " && ".join(commands)
 
 
 def _where():
     return tr(" (in the OSGeo4W Shell)") if sys.platform == "win32" else tr(" (in a terminal)")
-
-
-def _wanted(name):
-    """How pip is asked for a package."""
-    limits = {"shapely": '"shapely>=2"', "cv2": '"opencv-python-headless<4.12"'}
-    return limits.get(name, NEEDED[name])
 
 
 def _python():

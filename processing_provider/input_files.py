@@ -17,14 +17,12 @@ READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud
 
 def input_files(algorithm, parameters, context):
     """[(path, table or "", label)] of every file that the inputs name and that is there."""
-    files = []
-    for definition in algorithm.parameterDefinitions():
-        if definition.type() in READ and not definition.isDestination():
-            for source in _sources(parameters.get(definition.name()), context):
-                path, table = _file_of(source)
-                if path is not None:
-                    files.append((path, table, definition.description()))
-    return files
+    return [(path, table, definition.description()) for definition in _inputs(algorithm, READ)
+            for path, table in map(_file_of, _sources(parameters.get(definition.name()), context)) if path is not None]
+
+
+def _inputs(algorithm, kinds):
+    return [definition for definition in algorithm.parameterDefinitions() if definition.type() in kinds and not definition.isDestination()]
 
 
 def written_over(destination, path, inputs):
@@ -43,12 +41,11 @@ def layer_file(value, context):
 
 def check_files(algorithm, parameters, context):
     """Raise RoadExtractionError where an input names a file that describes data elsewhere, which QGIS would fetch."""
-    for definition in algorithm.parameterDefinitions():
-        if definition.type() in OPENED_BY_QGIS and not definition.isDestination():
-            value = _static(parameters.get(definition.name()), context)
-            file = value.partition("|")[0] if isinstance(value, str) else ""
-            if file and os.path.isfile(file):
-                check_local(file)
+    for definition in _inputs(algorithm, OPENED_BY_QGIS):
+        value = _static(parameters.get(definition.name()), context)
+        file = value.partition("|")[0] if isinstance(value, str) else ""
+        if file and os.path.isfile(file):
+            check_local(file)
 
 
 def _static(value, context):
@@ -58,8 +55,7 @@ def _static(value, context):
 
 def asks_servers(algorithm, parameters, context):
     """Whether an input is a layer that the user has from a server, which is then asked; for files, nothing is fetched."""
-    sources = [source for definition in algorithm.parameterDefinitions() if definition.type() in READ and not definition.isDestination()
-               for source in _sources(parameters.get(definition.name()), context)]
+    sources = [source for definition in _inputs(algorithm, READ) for source in _sources(parameters.get(definition.name()), context)]
     return any("://" in source or "/vsi" in source.lower() for source in sources if not os.path.exists(source))
 
 

@@ -16,20 +16,12 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
+from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.lazy import gdal, shapely
 from .texts import tr
 
-WKB_TYPES = {
-    "PointZ": Qgis.WkbType.PointZ,
-    "LineStringZ": Qgis.WkbType.LineStringZ,
-    "LineStringZM": Qgis.WkbType.LineStringZM,
-    "PolygonZ": Qgis.WkbType.PolygonZ,
-    "MultiLineStringZ": Qgis.WkbType.MultiLineStringZ,
-    "MultiPolygonZ": Qgis.WkbType.MultiPolygonZ,
-    "None": Qgis.WkbType.NoGeometry,
-}
+WKB_TYPES = {name: getattr(Qgis.WkbType, "NoGeometry" if name == "None" else name) for name in KIND_OF}
 KINDS = {Qgis.GeometryType.Point: POINT, Qgis.GeometryType.Line: LINE, Qgis.GeometryType.Polygon: POLYGON,
          Qgis.GeometryType.Null: TABLE, Qgis.GeometryType.Unknown: UNKNOWN}
 AT_ONCE = 5000  # features handed to a sink together

@@ -24,15 +24,15 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.texts import choice_word
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
+from .texts import tr
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
 CLOUD_FILTER = "Point clouds (*.las *.laz *.vpc *.LAS *.LAZ *.VPC);;All files (*.*)"
 # Found by name when a dialog is made, which happens in a window only
 DESKTOP = f"{__name__.split('.')[0]}.desktop"
 WIDGETS = {"clouds": "cloud_widget.PointCloudsWrapper", "trajectory": "trajectory_widget.TrajectoryWrapper",
-           "columns": "columns_widget.ColumnsWrapper", "choice": "choice_widget.ChoiceWrapper"}  # choices in other languages than English
+           "columns": "columns_widget.ColumnsWrapper", "choice": "dialog_wrapper.ChoiceWrapper"}  # choices in other languages than English
 FILE_FILTERS = {"cloud": "LAZ (*.laz);;LAS (*.las)", "report": "HTML (*.html)"}  # of results
 DECIMALS = 3  # millimetres; QGIS would show six
 
@@ -65,34 +65,20 @@ def _source_type(geometry):
     return SOURCE_TYPES.get(KIND_OF.get(geometry), SourceType.TypeVector)
 
 
-def _layer(spec):
-    return QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)])
-
-
-def _text(spec):
-    return QgsProcessingParameterString(spec.name, spec.label, spec.default)
-
-
-def _file_output(spec):
-    return QgsProcessingParameterFileDestination(spec.name, spec.label, FILE_FILTERS.get(spec.kind, spec.file_filter))
-
-
 # Kind of a parameter -> QGIS's own
 INPUTS = {
     "flag": lambda spec: QgsProcessingParameterBoolean(spec.name, spec.label, spec.default),
     "choice": lambda spec: QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=spec.default, usesStaticStrings=True),
     "whole": lambda spec: _number(spec, QgsProcessingParameterNumber.Type.Integer),
     "number": lambda spec: _number(spec, QgsProcessingParameterNumber.Type.Double),
-    "text": _text,
-    "columns": _text,
+    **dict.fromkeys(("text", "columns"), lambda spec: QgsProcessingParameterString(spec.name, spec.label, spec.default)),
     "expression": lambda spec: QgsProcessingParameterExpression(spec.name, spec.label, spec.default, spec.of),
     "crs": lambda spec: QgsProcessingParameterCrs(spec.name, spec.label, spec.default),
     "clouds": lambda spec: PointCloudFiles(spec.name, spec.label, SourceType.TypeFile),
     "cloud": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, fileFilter=CLOUD_FILTER),
     "file": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, fileFilter=spec.file_filter),
     "folder": lambda spec: QgsProcessingParameterFile(spec.name, spec.label, Qgis.ProcessingFileParameterBehavior.Folder),
-    "trajectory": _layer,
-    "layer": _layer,
+    **dict.fromkeys(("trajectory", "layer"), lambda spec: QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)])),
     "raster": lambda spec: QgsProcessingParameterRasterLayer(spec.name, spec.label),
     "connection": lambda spec: QgsProcessingParameterProviderConnection(spec.name, spec.label, "postgres"),
     "schema": lambda spec: QgsProcessingParameterDatabaseSchema(spec.name, spec.label, spec.of),
@@ -101,9 +87,8 @@ INPUTS = {
 OUTPUTS = {
     "layer": lambda spec: QgsProcessingParameterFeatureSink(spec.name, spec.label, _source_type(spec.geometry)),
     "raster": lambda spec: QgsProcessingParameterRasterDestination(spec.name, spec.label),
-    "cloud": _file_output,
-    "report": _file_output,
-    "file": _file_output,
+    **dict.fromkeys(("cloud", "report", "file"), lambda spec: QgsProcessingParameterFileDestination(
+        spec.name, spec.label, FILE_FILTERS.get(spec.kind, spec.file_filter))),
     "folder": lambda spec: QgsProcessingParameterFolderDestination(spec.name, spec.label),
 }
 
@@ -119,7 +104,7 @@ def qgis_parameter(spec):
         parameter.setCreateByDefault(spec.by_default)
     elif spec.kind == "number":
         parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})
-    elif spec.kind in WIDGETS and (spec.kind != "choice" or any(choice_word(choice) != choice for choice in spec.choices)):
+    elif spec.kind in WIDGETS and (spec.kind != "choice" or any(tr(choice) != choice for choice in spec.choices)):
         parameter.setMetadata({"widget_wrapper": {"class": f"{DESKTOP}.{WIDGETS[spec.kind]}"}})
     return parameter
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 from qgis.core import (
@@ -36,7 +37,7 @@ from ..algorithms.destinations import destination_path
 from ..core.common.features import COLOUR
 from .results.attributes import WORDS, explain_attributes
 from .results.layer_tree import place_layer
-from .results.origin import describe_origin
+from .results.road_maps import describe_origin
 from .results.runs import GROUP
 from .texts import tr
 
@@ -52,15 +53,10 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     _kept = []  # QGIS keeps no reference, and Python would collect it before the layer is loaded
 
-    def __init__(self, qml, schema, output="", run=None):
+    def __init__(self, qml, schema=(), output="", run=None):
         super().__init__()
-        self.qml, self.schema, self.output, self.run = qml, schema, output, run
-
-    @classmethod
-    def make(cls, qml, schema=(), output="", run=None):
-        styler = cls(str(qml), schema, output, run)
-        cls._kept = cls._kept[-50:] + [styler]
-        return styler
+        self.qml, self.schema, self.output, self.run = str(qml), schema, output, run
+        Styler._kept = Styler._kept[-50:] + [self]
 
     def postProcessLayer(self, layer, context, feedback):
         apply_style(layer, self.qml, self.schema, self.output)
@@ -116,15 +112,17 @@ def style_on_load(name, dest, title, context, schema=(), run=None):
     look, order = LOOKS.get(name, (None, TABLES))
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"
-    details.setPostProcessor(Styler.make(qml, schema, name, run))
+    details.setPostProcessor(Styler(qml, schema, name, run))
 
 
 # Looks of a layer: the road plan at first; by class, by status, by confidence and by uncertainty to switch to.
 
 STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"),
           ("accepted", "#4393c3"), ("drawn", "#2166ac"))
-CONFIDENCE = ((0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))
-UNCERTAINTY = ((0.0, 0.02, "#1a9850"), (0.02, 0.05, "#a6d96a"), (0.05, 0.15, "#fdae61"), (0.15, 100.0, "#d73027"))   # m, one sigma
+RANGES = {"confidence": [(low, high, colour, f"{low:g} – {high:g}") for low, high, colour in (
+              (0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))],
+          "sigma_m": [(low, high, colour, f"{100 * low:g} – {100 * high:g} cm" if high < 100 else f"> {100 * low:g} cm") for low, high, colour in (
+              (0.0, 0.02, "#1a9850"), (0.02, 0.05, "#a6d96a"), (0.05, 0.15, "#fdae61"), (0.15, 100.0, "#d73027"))]}   # m, one sigma
 LINE_WIDTH = 0.7  # mm
 
 
@@ -149,9 +147,8 @@ def load_look(layer, qml):
 def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
     """Further styles beside that of a QML file, which stays in force: by class where the folder by_class has one, and by the layer's fields."""
     names = {field.name() for field in layer.fields()}
-    looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_confidence),
-             ("sigma_m", tr("By uncertainty"), _by_uncertainty))
-    further = [(title, renderer) for field, title, renderer in looks if field in names]
+    looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_ranges), ("sigma_m", tr("By uncertainty"), _by_ranges))
+    further = [(title, partial(renderer, layer, field)) for field, title, renderer in looks if field in names]
     by_class = Path(qml).parent / "by_class" / Path(qml).name
     manager = layer.styleManager()
     if not further and not by_class.exists() or len(manager.styles()) > 1 or not layer.isSpatial():
@@ -165,7 +162,7 @@ def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
         load_look(other, by_class)
         _keep_style(manager, tr("By class"), other)
     for name, renderer in further:
-        other.setRenderer(renderer(layer))
+        other.setRenderer(renderer())
         _keep_style(manager, name, other)
 
 
@@ -176,21 +173,15 @@ def _keep_style(manager, name, layer):
     manager.addStyle(name, style)
 
 
-def _by_status(layer):
-    statuses = layer.uniqueValues(layer.fields().lookupField("status"))
-    return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), WORDS["status"][value])
-                                                   for value, colour in STATUS if value in statuses or not statuses])
+def _by_status(layer, field):
+    statuses = layer.uniqueValues(layer.fields().lookupField(field))
+    return QgsCategorizedSymbolRenderer(field, [QgsRendererCategory(value, _symbol(layer, colour), WORDS[field][value])
+                                                for value, colour in STATUS if value in statuses or not statuses])
 
 
-def _by_confidence(layer):
-    return QgsGraduatedSymbolRenderer("confidence", [QgsRendererRange(low, high, _symbol(layer, colour), f"{low:g} – {high:g}")
-                                                     for low, high, colour in CONFIDENCE])
-
-
-def _by_uncertainty(layer):
-    return QgsGraduatedSymbolRenderer("sigma_m", [
-        QgsRendererRange(low, high, _symbol(layer, colour), f"{100 * low:g} – {100 * high:g} cm" if high < 100 else f"> {100 * low:g} cm")
-        for low, high, colour in UNCERTAINTY])
+def _by_ranges(layer, field):
+    return QgsGraduatedSymbolRenderer(field, [QgsRendererRange(low, high, _symbol(layer, colour), title)
+                                              for low, high, colour, title in RANGES[field]])
 
 
 def _symbol(layer, colour):
@@ -219,17 +210,11 @@ def embed_style(name, dest, title, schema=(), provenance=None):
         _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
     if path is None or look is None or not qml.exists():
         return
-    if path.suffix.lower() in (".tif", ".tiff"):
-        _beside_the_raster(path, qml)
-    elif path.suffix.lower() == ".gpkg":
-        _in_the_database(QgsVectorLayer(_layer_uri(dest, path), title, "ogr"), title, qml, schema, name, provenance)
-
-
-def _beside_the_raster(path, qml):
-    layer = QgsRasterLayer(str(path), path.stem)
-    if layer.isValid():
+    if path.suffix.lower() in (".tif", ".tiff") and (layer := QgsRasterLayer(str(path), path.stem)).isValid():
         apply_style(layer, qml)
         layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
+    elif path.suffix.lower() == ".gpkg":
+        _in_the_database(QgsVectorLayer(_layer_uri(dest, path), title, "ogr"), title, qml, schema, name, provenance)
 
 
 def _in_the_database(layer, title, qml, schema, output, provenance):

@@ -17,8 +17,8 @@ from ..core.io.weights import IO
 from .export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from .export.opendrive.geometry import PlanElement, PlanView
 from .export.opendrive.reference_line import fit_reference
-from .export.sources import RoadMapSource
-from .export.xml_tree import XmlElement, xml_text
+from .export.sources import RoadMapSource, plan_length, without_repeats
+from .export.xml_tree import xml_text
 from .inventory.cross_sections import RoadSections, exceeded
 from .surface.model import SurfaceModel
 
@@ -215,109 +215,61 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     `crs`: WKT, metric, "" where unknown; where it is that of a survey in feet, so is the file, heights too. `name`: of the project.
     `moment`: when it is written.
     """
-    date, time = moment.strftime("%Y-%m-%d"), moment.strftime("%H:%M:%S")
-    root = XmlElement("LandXML", {"xmlns": NAMESPACE, "version": "1.2", "date": date, "time": time, "language": "English", "readOnly": "false"})
     file_wkt, units = as_in_file(crs)
     unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < IO.same_unit), "")
-    system, *names = ("Imperial", "squareFoot", unit, "cubicFeet", "fahrenheit", "inHG") if unit else (
-        "Metric", "squareMeter", "meter", "cubicMeter", "celsius", "milliBars")
-    root.add("Units").add(system, **dict(zip(("areaUnit", "linearUnit", "volumeUnit", "temperatureUnit", "pressureUnit"), names)),
-                          angularUnit="decimal degrees", directionUnit="decimal degrees")
     if unit:
         crs, alignments = file_wkt, [alignment.in_file(units) for alignment in alignments]
-    if (known := horizontal_part(parse_crs(crs))) is not None:
-        authority = known.to_authority()
-        root.add("CoordinateSystem", desc=known.name, epsgCode=authority[1] if authority and authority[0] == "EPSG" else None,
-                 ogcWktCode=known.to_wkt())
-    root.add("Project", name=name)
-    root.add("Application", name="Lanewright")
-    if surface is not None:
-        _surface(root.add("Surfaces").add("Surface", name=name), surface, units.across if unit else 1.0)
-    group = XmlElement("Alignments", {"name": name})
-    for alignment in alignments:
-        element = group.add("Alignment", name=alignment.name, length=alignment.length, staStart=0.0, desc=alignment.description)
-        geometry = element.add("CoordGeom")
-        if alignment.plan is None:
-            line = geometry.add("IrregularLine", length=alignment.length)
-            line.add("Start", _place(alignment.places[0]))
-            line.add("End", _place(alignment.places[-1]))
-            line.add("PntList2D", " ".join(map(_place, alignment.places)))
-        for piece in elements_without_reversal(alignment.plan) if alignment.plan is not None else ():
-            _element(geometry, piece)
-        if len(alignment.profile):
-            profile = element.add("Profile", name=alignment.name).add("ProfAlign", name=alignment.name)
-            for station, height in alignment.profile:
-                profile.add("PVI", f"{station:.4f} {height:.4f}")
-        if alignment.sections:
-            sections = element.add("CrossSects", name=alignment.name)
-            for station, ground in alignment.sections:
-                section = sections.add("CrossSect", sta=station, name=f"{station:.2f}").add("CrossSectSurf", name="Ground")
-                section.add("PntList2D", " ".join(f"{-offset:.3f} {height:.4f}" for offset, height in ground))
-    if alignments:
-        root.append(group)
-    return xml_text(root)
+    return xml_text("landxml.xml", namespace=NAMESPACE, moment=moment, unit=unit, crs=horizontal_part(parse_crs(crs)), name=name,
+                    surface=_surface(surface, units.across if unit else 1.0) if surface is not None else None, alignments=alignments,
+                    places_of=_places, elements_of=_elements)
 
 
-def _surface(element, model, unit):
+def _surface(model, unit):
     """A surface of triangles with the breaklines that they follow, in units of so many m. Vertices are numbered from 1."""
-    lines = element.add("SourceData").add("Breaklines")
-    for kind, places in model.followed:
-        lines.add("Breakline", brkType="standard", name=kind).add("PntList3D", " ".join(map(_place3d, (places + model.origin) / unit)))
     used, faces_of = np.unique(model.surface.faces, return_inverse=True)
     vertices = model.places[used] / unit
-    heights = vertices[:, 2]
-    definition = element.add("Definition", surfType="TIN", elevMin=float(heights.min()), elevMax=float(heights.max()))
-    points, faces = definition.add("Pnts"), definition.add("Faces")
-    for number, place in enumerate(vertices, start=1):
-        points.add("P", _place3d(place), id=number)
-    for corners in (faces_of.reshape(-1, 3) + 1).tolist():
-        faces.add("F", "{} {} {}".format(*corners))
+    return dict(lines=[(kind, (places + model.origin) / unit) for kind, places in model.followed], vertices=vertices, heights=vertices[:, 2],
+                faces=(faces_of.reshape(-1, 3) + 1).tolist())
 
 
-def _place3d(place: np.ndarray) -> str:
-    return f"{_place(place)} {place[2]:.4f}"
+def _places(places):
+    """Northing and easting of one place or (N, 2) places as text; of (N, 3) places their heights too."""
+    return " ".join(f"{y:.5f} {x:.5f}" + "".join(f" {z:.4f}" for z in height) for x, y, *height in np.atleast_2d(places))
 
 
-def _place(point: np.ndarray) -> str:
-    return f"{point[1]:.5f} {point[0]:.5f}"
+def _elements(alignment):
+    """(tag, attributes, {tag: places}) of what a line is made of."""
+    if alignment.plan is not None:
+        return map(_element, elements_without_reversal(alignment.plan))
+    places = alignment.places[:, :2]
+    return [("IrregularLine", {"length": alignment.length}, {"Start": places[0], "End": places[-1], "PntList2D": places})]
 
 
-def _element(geometry: XmlElement, piece: PlanElement) -> None:
+def _element(piece):
+    """The same of an element."""
     (start, end), (first, last), _ = piece.at(np.array([0.0, piece.length]))
-    points = {"Start": start, "End": end}
+    along = {"length": piece.length, "staStart": piece.s}
     if piece.kind == "line":
-        element = geometry.add("Line", length=piece.length, staStart=piece.s, dir=_azimuth(first))
-    elif piece.kind == "arc":
+        return "Line", {**along, "dir": _azimuth(first)}, {"Start": start, "End": end}
+    ways = {"rot": "ccw" if sum(piece.values) > 0 else "cw", "dirStart": _azimuth(first), "dirEnd": _azimuth(last)}
+    if piece.kind == "arc":
         bend = piece.values[0]
-        points = {"Start": start, "Center": start + np.array([-np.sin(first), np.cos(first)]) / bend, "End": end}
-        element = geometry.add("Curve", rot="ccw" if bend > 0 else "cw", crvType="arc", radius=abs(1 / bend), length=piece.length, staStart=piece.s,
-                               chord=float(np.hypot(*(end - start))), delta=float(np.degrees(abs(bend) * piece.length)),
-                               dirStart=_azimuth(first), dirEnd=_azimuth(last))
-    else:
-        points = {"Start": start, "PI": _intersection(start, first, end, last), "End": end}
-        element = geometry.add("Spiral", length=piece.length, radiusStart=_radius(piece.values[0]), radiusEnd=_radius(piece.values[1]),
-                               rot="ccw" if sum(piece.values) > 0 else "cw", spiType="clothoid", staStart=piece.s,
-                               theta=float(np.degrees(abs(last - first))), dirStart=_azimuth(first), dirEnd=_azimuth(last))
-    for tag, point in points.items():
-        element.add(tag, _place(point))
-
-
-def _radius(bend: float) -> str:
-    return "INF" if abs(bend) < 1e-9 else f"{abs(1 / bend):.6f}"
+        return "Curve", {"rot": ways.pop("rot"), "crvType": "arc", "radius": abs(1 / bend), **along, "chord": float(np.hypot(*(end - start))),
+                         "delta": float(np.degrees(abs(bend) * piece.length)), **ways}, {
+            "Start": start, "Center": start + np.array([-np.sin(first), np.cos(first)]) / bend, "End": end}
+    chord, turn = end - start, np.sin(last - first)
+    # where the tangents at both ends meet; half-way where they are parallel
+    tangents_meet = (start + end) / 2 if abs(turn) < 1e-9 else start + np.array([np.cos(first), np.sin(first)]) * (
+        chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
+    radii = ("INF" if abs(bend) < 1e-9 else f"{abs(1 / bend):.6f}" for bend in piece.values)
+    return "Spiral", {"length": piece.length, **dict(zip(("radiusStart", "radiusEnd"), radii)), "rot": ways.pop("rot"), "spiType": "clothoid",
+                      "staStart": piece.s, "theta": float(np.degrees(abs(last - first))), **ways}, {
+        "Start": start, "PI": tangents_meet, "End": end}
 
 
 def _azimuth(heading: float) -> float:
     """Degrees clockwise from north."""
     return float((90.0 - np.degrees(heading)) % 360.0)
-
-
-def _intersection(start, first, end, last):
-    """Where the tangents at both ends meet; half-way where they are parallel."""
-    turn = np.sin(last - first)
-    if abs(turn) < 1e-9:
-        return (start + end) / 2
-    chord = end - start
-    return start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
 
 
 def surface_lines(model: SurfaceModel) -> list[_DxfLine]:
@@ -358,7 +310,7 @@ class Alignment:
     @property
     def length(self) -> float:
         """In plan."""
-        return self.plan.length if self.plan is not None else float(np.hypot(*np.diff(self.places[:, :2], axis=0).T).sum())
+        return self.plan.length if self.plan is not None else plan_length(self.places)
 
 
 def alignments_of(source: RoadMapSource, tolerance: float) -> list[Alignment]:
@@ -411,8 +363,7 @@ def _joined(pieces):
 
 
 def _fitted(name, places, tolerance):
-    keep = np.append(True, np.hypot(*np.diff(places[:, :2], axis=0).T) > NEAREST_PLACES)
-    places = places[keep]
+    places = without_repeats(places, NEAREST_PLACES)
     origin = np.floor(places[0, :2])
     plan = fit_reference(places[:, :2] - origin, tolerance) if len(places) > 1 else None
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(places[:, :2], axis=0).T)))

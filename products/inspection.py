@@ -151,7 +151,10 @@ class _Counter:
             if name in names:
                 self.census.add(name, np.asarray(block[name]), time)
         if self.every:
-            self.copy_samples.append(_copy_samples(np.stack([x, y, z], axis=1), time, self.every))
+            whole = np.rint(np.stack([x, y, z], axis=1) * LAS.places_per_metre).astype(np.int64)   # mm
+            mixed = (whole * COPY_PRIMES).sum(axis=1).astype(np.uint64)
+            chosen = (mixed >> np.uint64(17)) % np.uint64(self.every) == 0
+            self.copy_samples.append((time[chosen], whole[chosen]))
         if self.tree is not None:
             distance, row = self.tree.query(np.c_[x, y][::SAMPLING_INTERVAL], distance_upper_bound=NEAR_TRAJECTORY)
             below = distance < READING.own_track_half_width
@@ -212,14 +215,6 @@ class _Tally:
         new, counts = np.unique(keys, return_counts=True)
         self.keys, index = np.unique(np.r_[self.keys, new], return_inverse=True)
         self.counts = np.bincount(index.ravel(), np.r_[self.counts, counts]).astype(np.int64)
-
-
-def _copy_samples(place, time, every):
-    """(M,) times and (M, 3) places in mm of one in `every` points, chosen by place."""
-    whole = np.rint(place * LAS.places_per_metre).astype(np.int64)
-    mixed = (whole * COPY_PRIMES).sum(axis=1).astype(np.uint64)
-    chosen = (mixed >> np.uint64(17)) % np.uint64(every) == 0
-    return time[chosen], whole[chosen]
 
 
 def _key(column, row, layer=0):

@@ -56,23 +56,15 @@ class IntensityPeaks:
         start, end = road_points.store.span(road)
         windows = list(range(int(np.floor(start / COORDINATE_SCALE / profile / count)), int(np.floor(end / COORDINATE_SCALE / profile / count)) + 1))
 
-        def records_of(window):
+        def records_of(window: int) -> tuple[Columns, np.ndarray]:
             records = _records_between(road_points, road, window * count * profile, (window + 1) * count * profile)
             return records, (records["s"] // profile).astype(np.int64)
 
-        def peaks_in(window: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-            records, profiles = records_of(window)
-            return profile_peaks(records, profiles, self)
-
-        def paint_in(window: int) -> Columns:
-            records, profiles = records_of(window)
-            return _between(records, profiles, row, left, right)
-
-        peaks = list(ordered_map(peaks_in, windows, progress.part(0.0, 0.6)))
+        peaks = list(ordered_map(lambda window: profile_peaks(*records_of(window), settings=self), windows, progress.part(0.0, 0.6)))
         row, left, right = (np.concatenate([f[k] for f in peaks]) for k in range(3))
         kept = in_chains(row, (left + right) / 2, self)
         row, left, right = row[kept], left[kept], right[kept]
-        yield from ordered_map(paint_in, windows, progress.part(0.6, 1.0))
+        yield from ordered_map(lambda window: _between(*records_of(window), peak_row=row, left=left, right=right), windows, progress.part(0.6, 1.0))
 
 
 def _records_between(road_points, road, first, last):
@@ -186,11 +178,9 @@ class PointSegments:
         start, end = road_points.store.span(road)
         windows = list(range(int(np.floor(start / COORDINATE_SCALE / length)), int(np.floor(end / COORDINATE_SCALE / length)) + 1))
 
-        def limits_of(window):
-            records = _records_between(road_points, road, window * length, (window + 1) * length)
-            return segment_thresholds(records, self)
-
-        limits = dict(zip(windows, ordered_map(limits_of, windows, progress.part(0.0, 0.5))))
+        limits = dict(zip(windows, ordered_map(
+            lambda window: segment_thresholds(_records_between(road_points, road, window * length, (window + 1) * length), self), windows,
+            progress.part(0.0, 0.5))))
         reach = int(np.ceil(self.radius / COORDINATE_SCALE)) + 1
 
         def paint_in(window):

@@ -133,9 +133,7 @@ def kind(d):
 def choices(d):
     if d.type() != "enum":
         return ""
-    from lanewright.algorithms.texts import choice_word
-
-    words = [f"`{option}`" + (f" ({choice_word(option)})" if choice_word(option) != option else "") for option in d.options()]
+    words = [f"`{option}`" + (f" ({tr(option)})" if tr(option) != option else "") for option in d.options()]
     return " " + tr("One of: {choices}.").format(choices=", ".join(words))
 
 

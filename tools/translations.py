@@ -34,7 +34,15 @@ NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
 NAMED = {"title", "signed"}  # attributes of the core whose shortest texts are shown too
 UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
-IN_A_CLASS = {"TITLE", "SUMMARY", "GROUP", "TAGS", "GROUPS", "CHOICES"}
+IN_A_CLASS = {"TITLE", "SUMMARY", "GROUP", "TAGS", "GROUPS"}
+# Words of choices, which commands and models keep as they are written here
+NAMES = ("scanner_channel", "point_source_id", "1.7", "1.8", "dxf", "landxml", "A4", "A3", "A2", "A1", "A0", "1:100", "1:200", "1:250", "1:500",
+         "1:1000", "1:2000", "1:2500", "1:5000", "en", "de")  # of fields, formats and languages: alike in every language
+CHOICES = ("automatic", "gps", "adjusted", "week", "day", "street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line",
+           "hatched-island", "motorway", "serpentine", "crossing", "roundabout", "outskirts", "cycle-lanes", "intensity", "rgb", "profiles",
+           "scanlines", "both", "linear", "logarithmic", "multi-threshold", "intensity-peaks", "point-segments", "all", "windows", "neutral",
+           "china", "germany", "japan", "united-states", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline", "right", "left",
+           "nonurban", "half-width", "total-width", "draw", "leave-out", "bilinear", "nearest", "cubic", "curbs", "landscape", "portrait")
 
 
 def texts():
@@ -51,7 +59,7 @@ def texts():
         found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
     for _, text in table(VOCABULARY):
         found.setdefault(text, VOCABULARY.relative_to(ROOT).as_posix())
-    for text in help_texts():
+    for text in (*CHOICES, *help_texts()):
         found.setdefault(text, HELP.relative_to(ROOT).as_posix())
     for recipe in RECIPES:
         found.setdefault(recipe.name, "tools/models.py")

@@ -240,8 +240,8 @@ def lack_of_memory() -> str:
     if memory is None or memory[0] - memory[1] >= least_room() * MEGABYTE:
         return ""
     limit, used = (value // MEGABYTE for value in memory)
-    return (f"Lanewright needs about {used + least_room()} MB of memory before it can begin, and this program may use {limit} MB: "
-            "start it where the limit is higher (ulimit -v) or where there is none.")
+    return (f"Lanewright needs about {used + least_room()} MB of memory before it can begin, and this program may use {limit} MB. "
+            "Start it where the limit is higher (ulimit -v).")
 
 
 def claim_memory() -> None:

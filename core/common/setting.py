@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, TypeVar
 
 from .errors import RoadExtractionError
 
 _KEY = "limits"
+Weights = TypeVar("Weights")
+
+
+def table(kind: type[Weights]) -> Weights:
+    """The one frozen object of a class of weights, which has the name of the class."""
+    return dataclass(frozen=True)(kind)()
 
 
 @dataclass(frozen=True)

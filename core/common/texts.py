@@ -95,17 +95,14 @@ def places_in(text: str) -> list[RoadPlace]:
 class CoreMessages:
     """Sentences of the core and their translations; `{}` stands for a number, a name or a phrase that is a text of the core itself.
 
-    translations : {English: translation}, with as many places in the same order; an empty one is none
+    path : JSON, {English: translation}, with as many places in the same order; an empty one is none, as is a file that is not there
     word : from a single word that is put in, such as a side, to that of the language
     """
 
-    def __init__(self, translations: dict[str, str], word: Callable[[str], str] = str):
+    def __init__(self, path: Path, word: Callable[[str], str] = str):
+        translations = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         self.word = word
         self._known = {source.strip(): target.strip() for source, target in translations.items() if target}
-
-    @classmethod
-    def load(cls, path: Path, word: Callable[[str], str] = str) -> CoreMessages:
-        return cls(json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}, word)
 
     def told(self, text: str) -> str:
         """A message in the user's language, sentence by sentence where it is not known as a whole; as it is where none of it is known."""

@@ -57,16 +57,15 @@ class LineKind(ABC):
         return self.accepted(piece)
 
 
-def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections: Sequence[Correction]) -> tuple[list[dict[str, Any]], set[int], bool]:
+def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections: Sequence[Correction]) -> tuple[list[dict[str, Any]], set[int]]:
     """Pieces of lines as an analyst corrected them, one correction after the other.
 
     Accepted stretches get the status `accepted`. What is drawn or moved replaces what lies along its new place, has the status `drawn`
     and the heights of the map around it.
 
-    Returns pieces, the rows of the corrections that something was found for, and whether anything changed
+    Returns pieces, and the rows of the corrections that something was found for: without any nothing has changed
     """
     matched: set[int] = set()
-    changed = False
     for correction in corrections:
         reach = max(CORRECTING.moved_from, kind.reach) if correction.action == "move" else kind.reach
         spans = spans_along([piece[kind.key][:, :2] for piece in pieces], correction, reach)
@@ -74,24 +73,22 @@ def apply_corrections(kind: LineKind, pieces: list[dict[str, Any]], corrections:
             continue
         matched.add(correction.row)
         like = pieces[spans[0][0]] if spans and correction.action == "move" else None
-        pieces, changed = _replaced(kind, pieces, spans, correction), True
+        pieces = _replaced(kind, pieces, spans, correction)
         if correction.draws:
             pieces.append(kind.drawn(correction, _with_heights(kind, correction), like, pieces))
-    return pieces, matched, changed
+    return pieces, matched
 
 
 def _replaced(kind, pieces, spans, correction):
     """Pieces without the stretches, or with the stretches accepted."""
-    spans_of: dict[int, list[tuple[float, float]]] = {}
-    for k, a, b in spans:
-        spans_of.setdefault(k, []).append((a, b))
     result = []
     for k, piece in enumerate(pieces):
-        if k not in spans_of:
+        on_piece = [(a, b) for number, a, b in spans if number == k]
+        if not on_piece:
             result.append(piece)
             continue
         length = float(np.hypot(*np.diff(piece[kind.key][:, :2], axis=0).T).sum())
-        parts = pieces_of(length, spans_of[k])
+        parts = pieces_of(length, on_piece)
         for a, b, along in parts:
             stretch = piece if len(parts) == 1 else kind.part(piece, a, b)
             if not along:
@@ -194,8 +191,6 @@ def _heights_for(places: np.ndarray, known: np.ndarray, otherwise: np.ndarray) -
     """(N,) z of (N, 3) places: their own where they have one, else that of the (K, 3) vertices of the map near them, else another."""
     z, known = places[:, 2].copy(), known[np.isfinite(known).all(1)]
     lacking = np.flatnonzero(~np.isfinite(z))
-    if not len(lacking):
-        return z
     z[lacking] = otherwise[lacking]
     if len(known):
         count = min(CORRECTING.height_neighbours, len(known))
@@ -236,20 +231,16 @@ def correct_edges(edges: RoadEdges, frame: RoadFrame, corrections: Corrections) 
         return edges
     places = np.c_[edges.course.x, edges.course.y, edges.course.z]
     kind = _Edges(frame, places)
-    pieces, matched, changed = apply_corrections(kind, [_piece_of(edges, k, places) for k in range(len(edges))], edge_corrections)
+    names = [field.name for field in fields(EdgePiece) if field.name not in ("vertices", "road")]
+    columns = {name: np.asarray(getattr(edges, name)).tolist() for name in names}
+    rows = [dict(zip(columns, row)) for row in zip(*columns.values())]
+    before = [dict(row, road=int(edges.road[k]), local=places[edges.course.line(k)]) for k, row in enumerate(rows)]
+    pieces, matched = apply_corrections(kind, before, edge_corrections)
     corrections.matched |= matched
-    if not changed:
+    if not matched:
         return edges
     return joined_pieces([EdgePiece(**{name: value for name, value in piece.items() if name != "local"}, vertices=piece["local"] + frame.origin)
                           for piece in pieces], frame, edges.crs)
-
-
-def _piece_of(edges: RoadEdges, k: int, places: np.ndarray) -> dict[str, Any]:
-    """A row of RoadEdges as the fields of EdgePiece, with local vertices."""
-    names = [field.name for field in fields(EdgePiece) if field.name not in ("vertices", "road")]
-    values = {name: getattr(edges, name)[k] for name in names}
-    return dict({name: value.item() if hasattr(value, "item") else value for name, value in values.items()}, road=int(edges.road[k]),
-                local=places[edges.course.line(k)])
 
 
 # Markings and marking lines as an analyst corrected them.
@@ -316,6 +307,6 @@ def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Co
     if not line_corrections or lines.fitted is None:
         return lines
     kind = _Lines(frame, np.concatenate([lines.fitted.vertices, known]))
-    pieces, matched, changed = apply_corrections(kind, pieces_of_lines(lines), line_corrections)
+    pieces, matched = apply_corrections(kind, pieces_of_lines(lines), line_corrections)
     corrections.matched |= matched
-    return painted_lines_of(pieces, frame, lines.crs) if changed else lines
+    return painted_lines_of(pieces, frame, lines.crs) if matched else lines

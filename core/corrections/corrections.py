@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -105,7 +106,10 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()
-    for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):
+    geometries, source, survey = features.geometries, parse_crs(features.crs), parse_crs(crs)
+    if source is not None and survey is not None and not same_crs(source, survey):
+        geometries = in_other_crs(geometries, source, survey)
+    for number, (geometry, row) in enumerate(zip(geometries, features.rows), start=1):
         action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
         for name, value, allowed in (("action", action, ACTIONS), ("target", target, TARGETS)):
             if value not in allowed:
@@ -119,8 +123,8 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
         if action == "take":
             lanes, kind = _second_reading(row.get("other"), target, number)
         for places in parts:
-            road, station, offset = _located(frame, places)
-            result.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note, lanes))
+            (road,), (station,), (offset,) = frame.locate_nearest(*places[len(places) // 2, :2, None])
+            result.rows.append(Correction(number, action, target, places, int(road), float(station), float(offset), kind, pattern, note, lanes))
     return result
 
 
@@ -132,7 +136,7 @@ def taken_reading(row: dict[str, Any], target: str) -> dict[str, str] | None:
 
 def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[float, float, int], ...], str]:
     """The lanes, and the kind of line, of a second reading in JSON."""
-    try:
+    with suppress(ValueError, KeyError, TypeError):
         reading = json.loads(text or "")
         if target == "lane":
             lanes = tuple((float(lane["offset_m"]), float(lane["width_m"]), int(lane["direction"])) for lane in reading["lanes"])
@@ -140,18 +144,8 @@ def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[fl
                 return lanes, ""
         elif target == "marking":
             return (), str(reading["kind"])
-    except (ValueError, KeyError, TypeError):
-        pass
     raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, but its field other holds none. "
                               "Copy the field other of that lane or marking line.")
-
-
-def _in_crs(features: Features, crs: str) -> list[Any]:
-    """The geometries of the layer in another CRS."""
-    source, target = parse_crs(features.crs), parse_crs(crs)
-    if source is None or target is None or same_crs(source, target):
-        return list(features.geometries)
-    return in_other_crs(features.geometries, source, target)
 
 
 def _parts_of(geometry: Any, row: dict[str, Any], frame: RoadFrame, number: int) -> Iterable[np.ndarray]:
@@ -175,14 +169,7 @@ def _place_of(row, frame, number):
     """Local x, y and no z of a row without geometry."""
     values = [row.get(name) for name in ("road", "station_m", "offset_m")]
     if any(value is None for value in values) or not 0 <= int(values[0]) < len(frame.roads):
-        raise RoadExtractionError(f"Row {number} of the corrections has neither a geometry nor a road of this survey with station_m and offset_m, "
-                                  "so its place is not known. Draw it as a point or line.")
+        raise RoadExtractionError(f"Row {number} of the corrections has neither a geometry nor a road of this survey with station_m and offset_m. "
+                                  "Draw it as a point or line.")
     x, y = frame.roads[int(values[0])].to_map(np.array([float(values[1])]), np.array([float(values[2])]))
     return float(x[0]), float(y[0]), np.nan
-
-
-def _located(frame, places):
-    """(road, station, offset) of the middle of places."""
-    middle = places[len(places) // 2:len(places) // 2 + 1]
-    road, s, d = frame.locate_nearest(middle[:, 0], middle[:, 1])
-    return int(road[0]), float(s[0]), float(d[0])

@@ -84,19 +84,21 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
         return lines, elements, lanes
     known = np.concatenate([lines.vertices, known])
     width = float(np.median(lines.width)) if len(lines) else lane_width
-    before = _rows_of_lines(lines)
+    names = [field.name for field in fields(lines) if field.name not in ("curve", "vertices", "start", "crs")]
+    before = [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
+              for k in range(len(lines))]
     lane_corrections = [part for correction in lane_corrections
                         for part in (_taken(correction, before, frame) if correction.action == "take" else [correction])]
     corrections.matched |= {correction.row for correction in corrections.of("lane")
                             if correction.action == "take" and correction.on_a_road and not correction.lanes}
-    rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
+    rows, of_lines = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
     # the area of a lane is drawn about its driving line
     lane_corrections = [correction for correction in lane_corrections if not correction.draws or correction.row in of_lines]
-    areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
+    areas, of_lanes = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
     corrections.matched |= of_lines | of_lanes
-    if lines_changed:
+    if of_lines:
         lines, elements = DrivingLines.of_pieces(rows, lines.crs), _remaining(elements, before, rows)
-    return lines, elements, _lanes_of(areas, frame, lanes.crs) if lanes_changed else lanes
+    return lines, elements, _lanes_of(areas, frame, lanes.crs) if of_lanes else lanes
 
 
 def _taken(correction, pieces, frame):
@@ -124,12 +126,6 @@ def _taken(correction, pieces, frame):
         else:
             result.append(drawn)
     return result
-
-
-def _rows_of_lines(lines):
-    names = [field.name for field in fields(lines) if field.name not in ("curve", "vertices", "start", "crs")]
-    return [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
-            for k in range(len(lines))]
 
 
 def _rows_of_lanes(lanes):

@@ -88,14 +88,18 @@ class Curve:
 class TabulatedCurve(Curve):
     """A curve of a parameter t, with a table of arc lengths.
 
-    Subclasses define `_span` (t at start and end), `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
+    Subclasses define `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
     """
 
-    _span: Callable[[], tuple[float, float]]
+    first: float   # first, last: t at start and end, of those that have no knots
+    last: float
     _place: Callable[[np.ndarray], np.ndarray]
     _slope: Callable[[np.ndarray], np.ndarray]
     _bend: Callable[[np.ndarray], np.ndarray]
     tilt: float   # radians, direction of the axis of those that have one
+
+    def _span(self):
+        return self.first, self.last
 
     @cached_property
     def _table(self):
@@ -185,11 +189,6 @@ class Arc(Curve):
     def radius(self) -> float:
         return abs(1.0 / self.bend) if self.bend else float("nan")
 
-    @property
-    def centre(self) -> tuple[float, float]:
-        """(x, y) of the circle's centre, metres; only where `bend` is not 0."""
-        return self.x - np.sin(self.direction) / self.bend, self.y + np.cos(self.direction) / self.bend
-
     def at(self, u: np.ndarray) -> np.ndarray:
         u = np.asarray(u, float)
         turn = self.bend * u
@@ -222,7 +221,8 @@ class Arc(Curve):
     def params(self) -> dict[str, Any]:
         numbers = super().params()
         if self.bend:
-            numbers["centre"], numbers["radius"] = [float(c) for c in self.centre], self.radius
+            centre = self.x - np.sin(self.direction) / self.bend, self.y + np.cos(self.direction) / self.bend
+            numbers["centre"], numbers["radius"] = [float(c) for c in centre], self.radius
         return numbers
 
     def reversed(self) -> Arc:

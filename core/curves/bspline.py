@@ -166,8 +166,7 @@ class Spline(TabulatedCurve):
         return Spline(self.knots, tuple(v + dx for v in self.control_x), tuple(v + dy for v in self.control_y))
 
 
-def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None,
-                bandwidth: float | None = None) -> list[CurveFit]:
+def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None) -> list[CurveFit]:
     """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
     The penalty is on the third derivative: arcs are not affected, only changes of
@@ -177,14 +176,13 @@ def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[
 
     lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
     along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
-    bandwidth : metres, or None to select it for each line
 
     References
     ----------
     .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
        dimension is the integral of 1 / (1 + (w b)^6).
     """
-    selections = [_SplineSelection(*checked_points(x, y, 4), distances, bandwidth) for (x, y), distances in zip(lines, along or [None] * len(lines))]
+    selections = [_SplineSelection(*checked_points(x, y, 4), distances) for (x, y), distances in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]
     while waiting:
         check_cancelled()
@@ -211,11 +209,11 @@ def _next_batch(waiting):
 class _SplineSelection:
     """A line to which a spline is fitted: the bandwidths still to be tried, and the best fit so far."""
 
-    def __init__(self, x, y, along, bandwidth):
+    def __init__(self, x, y, along):
         self.x, self.y = x, y
         self.t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
         self.length = float(self.t[-1])
-        self.waiting = [bandwidth] if bandwidth else [b for b in FITS.bandwidths[::-1] if b < max(self.length, 2.5)]
+        self.waiting = [b for b in FITS.bandwidths[::-1] if b < max(self.length, 2.5)]
         self.best = None
 
     def take(self, fitted):
@@ -250,10 +248,9 @@ def _chord_lengths(x, y):
 
 
 def _smoothed(values, reach=4):
-    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]] \
-        if len(values) > reach else values
-    if len(padded) == len(values):
+    if len(values) <= reach:
         return values
+    padded = np.r_[2 * values[0] - values[reach:0:-1], values, 2 * values[-1] - values[-2:-reach - 2:-1]]
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -50,19 +51,23 @@ class SegmentIndex:
 
     def __init__(self, lines: Sequence[shapely.LineString]) -> None:
         points, owner = shapely.get_coordinates(np.asarray(lines, object), include_z=True, return_index=True)
-        run = np.hypot(*np.diff(points[:, :2], axis=0).T) if len(points) > 1 else np.empty(0)
-        along = np.r_[0.0, np.cumsum(run)] if len(points) else run
-        segments = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0)) if len(points) > 1 else np.empty(0, int)
-        begins = np.searchsorted(owner, np.arange(len(lines)))
+        run = np.hypot(*np.diff(points[:, :2], axis=0).T)
+        along = np.r_[0.0, np.cumsum(run)]
+        segments = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0))
+        begins, ends = (np.searchsorted(owner, np.arange(len(lines)), side=side) for side in ("left", "right"))
         self.a, self.b, self.line = points[segments], points[segments + 1], owner[segments]
         self.length = run[segments]
-        self.start = along[segments] - along[begins[self.line]] if len(segments) else np.empty(0)
-        self._along = along[segments] if len(segments) else np.empty(0)
-        self._line_start = along[begins] if len(points) else np.empty(0)
-        ends = np.searchsorted(owner, np.arange(len(lines)), side="right") - 1
-        self._line_length = along[ends] - self._line_start if len(points) else np.empty(0)
-        self._heading: np.ndarray | None = None
-        self._tree: shapely.STRtree | None = None
+        self.start = along[segments] - along[begins[self.line]]
+        self._along, self._line_start = along[segments], along[begins]
+        self._line_length = along[ends - 1] - self._line_start
+
+    @cached_property
+    def _tree(self):
+        return shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
+
+    @cached_property
+    def _heading(self):
+        return self.heading_at(self.line, self.start + self.length / 2)
 
     def at(self, line: np.ndarray, station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(xy (N, 2), z (N,)) at stations, metres, along the lines of these indices."""
@@ -90,15 +95,11 @@ class SegmentIndex:
         """
         if not len(self.a) or not len(xy):
             return _no_nearest_points(len(xy))
-        if self._tree is None:
-            self._tree = shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
         parts = []
         for k in range(0, len(xy), QUERY_BATCH):
             progress.report(k / len(xy))
             check_cancelled()
             rows = slice(k, k + QUERY_BATCH)
-            if max_angle is not None and self._heading is None:
-                self._heading = self.heading_at(self.line, self.start + self.length / 2)
             if max_angle is None:
                 pairs = self._tree.query_nearest(shapely.points(xy[rows]), all_matches=False)
             else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -55,8 +54,15 @@ def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]], elements: bool = 
 
     elements : whether the lines are elements of an alignment: straight lines, circles or clothoids, however far off
     """
-    choices = _select_each(lines) if elements else _select_each(
-        lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), FITS.max_residual_p95)
+    choices = [_ModelSelection(np.inf if elements else FITS.max_residual_p95) for _ in lines]
+    kinds: Sequence[tuple[str, int, Callable[..., list[CurveFit]]]] = ALIGNMENT_CURVES
+    for name, fewest, fit_all in kinds if elements else (*kinds, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)):
+        # kinds that cannot change a selection are not fitted
+        open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
+                     and (name != "ellipse" or choice.turn > FITS.min_ellipse_turn)]
+        for k, fit in zip(open_ones, fit_all([lines[k] for k in open_ones])):
+            if fit is not None:
+                choices[k].add(fit)
     return [choice.best or min(choice.found, key=lambda fit: fit.residual_p95) for choice in choices]
 
 
@@ -73,24 +79,6 @@ def _ellipses(lines):
 # (name, minimum number of points, function of a list of lines) of the elements of a road alignment, simplest first
 ALIGNMENT_CURVES = tuple((name, fewest, partial(fit_all, max_misfit=MAX_MISFIT))
                          for name, fewest, fit_all in (("line", 2, fit_lines), ("circle", 4, fit_circles), ("clothoid", 8, fit_clothoids)))
-
-
-def _select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
-                 kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[_ModelSelection]:
-    """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
-
-    lines : list of (x, y), each (N,) metres, ordered along the line
-    kinds : as ALIGNMENT_CURVES, simplest first
-    max_residual : metres; largest acceptable 95th percentile of the residuals
-    """
-    choices = [_ModelSelection(max_residual) for _ in lines]
-    for name, fewest, fit_all in kinds:
-        open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
-                     and (name != "ellipse" or choice.turn > FITS.min_ellipse_turn)]
-        for k, fit in zip(open_ones, fit_all([lines[k] for k in open_ones])):
-            if fit is not None:
-                choices[k].add(fit)
-    return choices
 
 
 class _ModelSelection:

@@ -52,12 +52,6 @@ class CurveProblem:
         self.x, self.y = x - self.centre[0], y - self.centre[1]
         self.direction = float(np.arctan2(y[-half:].sum() - y[:half].sum(), x[-half:].sum() - x[:half].sum()))
 
-    def of(self, rows: np.ndarray) -> CurveProblem:
-        """The same unknowns for some of the points."""
-        part = copy(self)
-        part.x, part.y = self.x[rows], self.y[rows]
-        return part
-
     def start(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(P,) unknowns to begin with, (P,) the size of a sensible step of each, and (N,) where the points lie along the curve, if that is kept."""
         raise NotImplementedError
@@ -72,7 +66,8 @@ class CurveProblem:
         An even share of many points comes first. A curve from which a twentieth of all points lie farther than `max_misfit`, m, stays at that.
         """
         rows = np.rint(np.linspace(0, len(self.x) - 1, min(len(self.x), FITS.coarse_points))).astype(np.int64)
-        part = self.of(rows)
+        part = copy(self)
+        part.x, part.y = self.x[rows], self.y[rows]
         unknown, scale, along = part.start()
         unknown, along = _least_soft_l1(part, unknown, scale, along, FITS.fit_tolerance if len(rows) == len(self.x) else FITS.coarse_fit_tolerance)
         along = np.interp(np.arange(len(self.x)), rows, along)

@@ -110,9 +110,6 @@ class Ellipse(TabulatedCurve):
 
     kind = "ellipse"
 
-    def _span(self):
-        return self.first, self.last
-
     def _place(self, t):
         return self._turned(self.a * np.cos(t), self.b * np.sin(t)) + [self.x, self.y]
 
@@ -228,9 +225,6 @@ class Polynomial(TabulatedCurve):
     last: float
 
     kind = "polynomial"
-
-    def _span(self):
-        return self.first, self.last
 
     def _value(self, t, order):
         series = np.polynomial.Polynomial(self.coefficients)

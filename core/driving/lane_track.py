@@ -55,6 +55,11 @@ class LaneTrack:
     def last(self) -> int:
         return self.first + len(self.d) - 1
 
+    @property
+    def stations(self) -> np.ndarray:
+        """(N,) int, numbers of its grid stations."""
+        return np.arange(self.first, self.first + len(self))
+
     def __len__(self) -> int:
         return len(self.d)
 

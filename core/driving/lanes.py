@@ -14,7 +14,7 @@ from ..markings.cross_section.beside import BEYOND
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.sequence import beside_surface_end, lane_places
+from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
 from ..markings.cross_section.weights import SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
@@ -70,7 +70,7 @@ def _to_its_ends(track, boundaries):
 
 def _within_its_borders(track, boundaries):
     """The track less the stations at its ends where a painted border has ended more than a station before."""
-    columns, bounded = np.arange(track.first, track.last + 1), np.ones(len(track), bool)
+    columns, bounded = track.stations, np.ones(len(track), bool)
     for rows in (track.left, track.right):
         bounding = (rows >= 0) & boundaries.bounding[rows]
         bounded &= ~bounding | np.isfinite(boundaries.d[rows, columns])
@@ -78,14 +78,15 @@ def _within_its_borders(track, boundaries):
     return track.part(present[0], present[-1] + 1) if len(present) else track
 
 
-def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries) -> list[LaneTrack]:
+def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: RoadEstimate) -> list[LaneTrack]:
     """The same lanes, each on from where its paint ends, as at a stop line, up to where what bounds the road beside it begins to move aside.
 
-    That is the mouth of a junction. On the way a lane keeps its share of the room between the nearest borders that go on, which may change by the
-    double of SAME_LANE: half of that is what its middle is off by then. Where anything begins between these, such as an island, it shares it no more.
+    That is the mouth of a junction. On the way a lane that was driven goes on as most of its borders and the drive do, another one keeps its share
+    of the room between the nearest borders that go on. Either may change by the double of SAME_LANE: half of that is what its middle is off by
+    then. Where anything begins on the lane, or between the borders of one that nobody drove, such as an island, it ends.
     """
     spans, result = spans_of(tracks), list(tracks)
-    least, reach = (int(length / STATION_STEP) for length in (ALIGNMENT.min_status_length, ROADS.shortest_bare))
+    reach = int(ROADS.shortest_bare / STATION_STEP)
     for number in range(len(tracks)):
         for head in (True, False):
             track = result[number]
@@ -93,12 +94,12 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries) -> list[LaneTr
             ahead = np.arange(end, end + step * (reach + 1), step)
             ahead = ahead[(ahead >= 0) & (ahead < len(boundaries.s))]
             d, width = track.at(end)
-            course = _beside_borders(boundaries, ahead, d, width, least)
+            course = _beside_borders(boundaries, ahead, d, width, _driven_on(estimate, boundaries.s, ahead, d, width, track.direction))
             near = [result[k] for k in spans.near(end - 2 * reach, end + 2 * reach).tolist() if k != number]
             taken = [any(abs(other.at(k)[0] - place) < (other.at(k)[1] + width) / 2 - SAME_LANE for other in near)
                      for k, place in zip(ahead.tolist(), course.tolist())]
             count = taken.index(True) if True in taken else len(taken)
-            if count > least:
+            if count > 1:
                 ahead, course = (values[1:count][::step] for values in (ahead, course))
                 more = _inferred(track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1))
                 result[number] = LaneTrack.joined([more, track] if head else [track, more])
@@ -113,26 +114,44 @@ def _inferred(track):
                    probability=trust * track.probability, confidence=trust * track.confidence)
 
 
-def _beside_borders(boundaries, ahead, d, width, least):
+def _driven_on(estimate, s, ahead, d, width, direction):
+    """(N,) m, how far aside those who drove in a lane at `d` at the first of the stations `ahead` drove at each; NaN beyond, None without any."""
+    evidence = estimate.evidence
+    there = np.isfinite(evidence.driven[:evidence.own, np.searchsorted(estimate.candidates.first, ahead, side="right") - 1])
+    passes = np.flatnonzero((evidence.directions[:evidence.own] == direction) & there[:, 0])
+    drives = np.where(there[passes], _drives(ahead, s, estimate, passes), np.nan)
+    drives = drives[np.abs(drives[:, 0] - d) < width / 2]
+    return (drives - drives[:, :1]).mean(axis=0) if len(drives) else None
+
+
+def _beside_borders(boundaries, ahead, d, width, driven):
     """(N,) m, offsets of a lane at `d` at the stations `ahead`, from the first of them on, as far as what bounds it goes on alike."""
     rows = boundaries.d.spans.near(*sorted((int(ahead[0]), int(ahead[-1]))))
-    rows = rows[~SURFACE_END[boundaries.made_of[rows]]]
+    rows = rows[~SURFACE_END[boundaries.patterns[rows, ahead[0]]]]
     offset = boundaries.d[rows[:, None], ahead]
-    beside = offset[:, 0] - d
+    beside, least = offset[:, 0] - d, int(ALIGNMENT.min_status_length / STATION_STEP)
     goes_on = np.isfinite(offset[:, :least + 1]).all(axis=1)
     sides = [np.flatnonzero((side * beside > width / 2 - SAME_LANE) & goes_on) for side in (1, -1)]
-    if not all(len(side) for side in sides):
-        return np.array([d])
-    left, right = (side[np.abs(beside[side]).argmin()] for side in sides)
-    room = offset[left] - offset[right]
+    nearest = np.array([side[np.abs(beside[side]).argmin()] for side in sides if len(side)], int)
     # between two lines that both go on it has ended for another reason
-    if boundaries.bounding[rows[[left, right]]].all() and room[0] < width + NEUTRAL.narrowest_lane:
+    if len(nearest) < (2 if driven is None else 1) or boundaries.bounding[rows[nearest]].all() \
+            and np.abs(beside[nearest]).sum() < width + NEUTRAL.narrowest_lane:
         return np.array([d])
-    course = offset[right] + room * (d - offset[right, 0]) / room[0]
-    begins = offset[np.isnan(beside)]
+    bounds, begins = offset[nearest], offset[np.isnan(beside)]
     with np.errstate(invalid="ignore"):   # NaN where a border has ended
-        alike = (np.abs(room - room[0]) < 2 * SAME_LANE) & ~((begins < offset[left]) & (begins > offset[right])).any(axis=0)
-    return course[:len(alike) if alike.all() else int(np.argmin(alike))]
+        if driven is None:
+            room = bounds[0] - bounds[1]
+            course, moved = bounds[1] + room * (d - bounds[1, 0]) / room[0], np.abs(room - room[0])
+            within = (begins < bounds[0]) & (begins > bounds[1])
+        else:
+            # what most of these have in common: one border may give way to a bay, and a vehicle may turn
+            course = d + np.median([*(bounds - bounds[:, :1]), driven], axis=0)
+            aside = np.abs(bounds - course) - np.abs(beside[nearest, None])
+            moved = np.maximum(aside.max(axis=0), np.abs(aside).min(axis=0))
+            within = np.abs(begins - course) < width / 2
+        alike = (moved < 2 * SAME_LANE) & ~within.any(axis=0)
+    count = len(alike) if alike.all() else int(np.argmin(alike))
+    return course[:1 if driven is None and count <= least else count]
 
 
 def _without_steps(parts):
@@ -170,40 +189,46 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     bounds = np.flatnonzero(np.diff(of)) + 1
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
-        if UNPAINTED[list(drawn)].any() and span.count > 1:
+        bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
+        # one lane has all the room between two borders, and beside an island
+        if bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
             part = _where_driven(part, boundaries.s, estimate, span, lane_width)
-        elif span.count == 1 and span.beside[BEYOND] >= 0 and SURFACE_END[list(drawn)].any():
-            drives = _drives(part, boundaries.s, estimate, np.arange(estimate.evidence.own))
+        elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
+            drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
 
 def _where_driven(part, s, estimate, span, lane_width):
-    """The LaneTrack of a lane of a strip whose lanes nothing parts, moved from its even share of the strip to where it was driven, as far as surer.
+    """The LaneTrack of a lane of a strip that has no paint on both its sides, moved from its share of the strip to where it was driven.
 
-    One lane has all the room between its borders. Where several share it, lanes of the usual width may lie anywhere in it; and either they share it
-    evenly, or they are as unlike as lanes of a road are, both as probable. Vehicles keep to their middle with some scatter. All these are normal
-    errors about the middle: where one drove far from an even share it is not even.
+    Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
+    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or are as unlike as lanes of a road are,
+    both as probable. Vehicles keep to the middle with some scatter; beside a line they rarely give way to something and show nothing. All these are
+    normal errors about the middle, so it is moved as far as the drive is surer.
     """
     evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
-    beside = _drives(part, s, estimate, passes) - part.d
+    beside = _drives(part.stations, s, estimate, passes) - part.d
     inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
     beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    of_place = (span.count * room) ** 2 / 12 + np.array([[0.0], [weights.width_sigma**2]])   # that of an even distribution, and of widths
+    anywhere, alone = (span.count * room) ** 2 / 12, span.count == 1
+    full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
+    of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
     variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
-    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance)
-    share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / probable.sum(axis=0), 0.0)
-    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=share > 0.5)
+    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
+    nothing = alone * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
+    share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / (probable.sum(axis=0) + nothing), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if alone else share > 0.5)
 
 
-def _drives(part, s, estimate, passes):
-    """(P, N) m, offsets of some passes at the places of a LaneTrack, between the middles of intervals and beyond the last of them."""
+def _drives(stations, s, estimate, passes):
+    """(P, N) m, offsets of some passes at (N,) stations of the grid, between the middles of intervals and beyond the last of them."""
     c, driven = estimate.candidates, estimate.evidence.driven
-    middle, places, seen = (s[c.first] + s[c.last]) / 2, s[part.first:part.last + 1], np.isfinite(driven)
-    return np.array([np.interp(places, middle[seen[p]], driven[p, seen[p]]) for p in passes]).reshape(-1, len(part))
+    middle, seen = (s[c.first] + s[c.last]) / 2, np.isfinite(driven)
+    return np.array([np.interp(s[stations], middle[seen[p]], driven[p, seen[p]]) for p in passes]).reshape(-1, len(stations))
 
 
 def _with_borders(boundaries, candidates, span):

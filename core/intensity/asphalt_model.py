@@ -44,11 +44,9 @@ class VehicleDistances:
         time, number = points.time, points.pass_number
         result = [np.full(len(points), UNKNOWN_DISTANCE, np.int32) for _ in kinds]
         for table in self._tables if len(points) else ():
-            rows = table.rows(time, number)
-            if rows is None:
-                for whole, distances in zip(result, table.distances(points, time, kinds)):
-                    whole[:] = distances
-            elif len(rows):
+            of_pass = table.rows(time, number)
+            if of_pass.any():
+                rows = slice(None) if of_pass.all() else np.flatnonzero(of_pass)
                 for whole, distances in zip(result, table.distances(points[rows], time[rows], kinds)):
                     whole[rows] = distances
         return result
@@ -63,13 +61,13 @@ class _PassTable:
         self.ticks = self.begin + ASPHALT.vehicle_tick * np.arange(self.first, int(np.floor((last - self.begin) / ASPHALT.vehicle_tick)) + 2)
         self._positions: dict[str, np.ndarray] = {}
 
-    def rows(self, time: np.ndarray, number: np.ndarray) -> np.ndarray | None:
-        """Indices of the points of this pass; None for all of them."""
+    def rows(self, time: np.ndarray, number: np.ndarray) -> np.ndarray:
+        """(N,) bool, which points are of this pass."""
         rows = number == self.driven.number
         start, end = self.begin - ASPHALT.pass_margin, self.driven.time[-1] + ASPHALT.pass_margin
         if time.min() < start or time.max() > end:
             rows &= (time >= start) & (time <= end)
-        return None if rows.all() else np.flatnonzero(rows)
+        return rows
 
     def distances(self, points: Points, time: np.ndarray, kinds: Sequence[int]) -> Iterator[np.ndarray]:
         tick = time - self.begin
@@ -130,13 +128,6 @@ def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
     return median, spread
 
 
-def _distance_bin(distances: np.ndarray) -> np.ndarray:
-    """(N,) int32 bin of (N,) int32 signed distances, units of 0.1 mm."""
-    number = distances + np.int32(ASPHALT.max_distance / COORDINATE_SCALE)
-    number //= np.int32(ASPHALT.distance_bin / COORDINATE_SCALE)
-    return np.clip(number, 0, DISTANCE_BINS - 1, out=number)
-
-
 def to_level(intensity: np.ndarray) -> np.ndarray:
     """(N,) int32 level of (N,) intensities."""
     if intensity.dtype == np.uint16:
@@ -185,7 +176,9 @@ class IntensityHistograms:
         level, scanners = to_level(intensity), self.counts.shape[1]
         result = []
         for kind, row in zip(kinds, distances):
-            number = _distance_bin(row)
+            number = row + np.int32(ASPHALT.max_distance / COORDINATE_SCALE)
+            number //= np.int32(ASPHALT.distance_bin / COORDINATE_SCALE)
+            np.clip(number, 0, DISTANCE_BINS - 1, out=number)
             first, bins = int(number.min()), int(np.ptp(number)) + 1
             number -= first
             if scanners > 1:
@@ -227,8 +220,6 @@ def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarra
     dense = total >= ASPHALT.min_asphalt_points
     median, sigma = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
     counts = histograms[dense].astype(float)
-    if not len(counts):
-        return median, sigma
     limit = np.full(len(counts), INTENSITY_LEVELS)
     for _ in range(ASPHALT.cleaning_rounds):
         remaining = np.where(np.arange(INTENSITY_LEVELS) <= limit[..., None], counts, 0.0)

@@ -6,8 +6,9 @@ laser always points at the same elevation: its points form a ring, and the aspha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -184,21 +185,22 @@ class Beams:
             value[rows] = np.maximum(value[rows] + correction, 0.0) if self.added[scanner] else value[rows] * correction
         return value
 
-    @property
-    def count(self) -> int:
-        return sum(len(corrections) for corrections in self.corrections.values())
-
 
 def _levels(road_points, models, progress):
     """(scanners with beams, ELEVATION_BINS, INTENSITY_LEVELS) how many points have each level at each elevation."""
     counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
-    length = road_points.store.section_length
-    phase = Phase(_levels_at_elevations, road_points, (models,), lambda item: road_points.survey.stretch(
-        item[0], item[1] * length, item[2] * length), state=road_points.store.state)
+    phase = phase_of_stretches(_levels_at_elevations, road_points, (models,))
     for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
         for of_scanner, (place, number) in zip(counts, of_stretch):
             of_scanner[place] += number
     return counts.reshape(len(models), ELEVATION_BINS, INTENSITY_LEVELS)
+
+
+def phase_of_stretches(function: Callable[..., Any], road_points: RoadPoints, arguments: tuple[Any, ...], source: RoadPoints | None = None) -> Phase:
+    """The phase, a function of stretches of the road points, that reads from these or from a `source`."""
+    length = road_points.store.section_length
+    return Phase(function, road_points if source is None else source, arguments, state=road_points.store.state,
+                 place=lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
 
 
 def _levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:

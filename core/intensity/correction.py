@@ -11,7 +11,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
-from ..execution.phase import Phase
+from ..execution.in_step import Asked, Work, in_step
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
@@ -30,7 +30,7 @@ from .asphalt_model import (
     to_intensity,
     to_level,
 )
-from .beams import Beams
+from .beams import Beams, phase_of_stretches
 from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
@@ -69,10 +69,10 @@ class _Saturation:
         texts = []
         if self.at_highest >= ASPHALT.max_share_at_highest:
             texts.append(f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: brighter values "
-                         "were cut off, so that paint there may be no brighter than asphalt and be missed.")
+                         "were cut off, and paint there may be missed.")
         if self.at_lowest >= MAX_SHARE_AT_LOWEST:
             texts.append(f"{100 * self.at_lowest:.0f} % of the road's points have the lowest intensity, {self.lowest:.0f}: darker values "
-                         "were cut off, so that asphalt seems to be of one tone and its bright spots may be taken for paint.")
+                         "were cut off, and bright spots of asphalt may be taken for paint.")
         return " ".join([*texts, REMEDY]) if texts else ""
 
 
@@ -120,8 +120,6 @@ class _IntensityReport:
     scale: str = ""   # "linear", "logarithmic", or "" where nothing was corrected
     reference: float = float("nan")   # the intensity that asphalt was brought to
     scanners: list[dict[str, Any]] = field(default_factory=list)
-    between_before: float = float("nan")   # between_before, between_after: highest over lowest scanner's asphalt
-    between_after: float = float("nan")
     spread_before: float = float("nan")   # spread_before, spread_after: coefficient of variation of asphalt over distances and scanners, %
     spread_after: float = float("nan")
     beams: int = 0   # how many beams of spinning scanners were equalised, 0 where there are none
@@ -170,7 +168,8 @@ class AsphaltLook:
         # points without a position of the vehicle, and all points
         without_vehicle, highest = np.zeros(2, np.int64), 0
         arguments = list(frame.passes), beams, scanners, step
-        for raw, equal, brightest, lost in _run(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+        phase = phase_of_stretches(levels_of_stretch, road_points, arguments)
+        for raw, equal, brightest, lost in road_points.executor.run(phase, road_points.stretches(), progress.part(0.4, 1.0)):
             before.add(raw, step)
             modelled.add(equal, step)
             without_vehicle += lost
@@ -204,26 +203,23 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     _IntensityReport; its `reason` says why nothing was corrected
     """
     asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
+    return in_step([intensity_corrected(road_points, frame, asphalt, progress)], road_points.executor, progress.part(0.5, 1.0))[0]
+
+
+def intensity_corrected(road_points: RoadPoints, frame: RoadFrame, asphalt: AsphaltLook, progress: Progress) -> Work:
+    """The work of the second round of `correct_intensity`; `progress` is told what was done."""
     if asphalt.reason or asphalt.table is None:
         progress.warn(asphalt.reason)
         return road_points, _IntensityReport(reason=asphalt.reason)
-    store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
+    store, after = yield from _corrected_store(road_points, frame, asphalt)
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
-    report.beams = asphalt.beams.count if asphalt.beams else 0
+    report.beams = sum(map(len, asphalt.beams.corrections.values())) if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
     if report.saturation.warning:
         progress.warn(report.saturation.warning)
     for line in report.lines()[:1]:
         progress.info(line)
     return replace(road_points, store=store, has_corrected=True), report
-
-
-def _run(function, road_points, arguments, progress, source=None):
-    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
-    length, source = road_points.store.section_length, road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=road_points.store.state)
-    return road_points.executor.run(phase, road_points.stretches(), progress)
 
 
 def _reason_of_counts(table, lost, points):
@@ -235,15 +231,21 @@ def _reason_of_counts(table, lost, points):
     return ""
 
 
-def _corrected_store(road_points, frame, asphalt, progress):
-    """The points with `corrected`, and the counts of their IntensityHistograms."""
+def _corrected_store(road_points, frame, asphalt):
+    """Part of a work: the points with `corrected`, and the counts of their IntensityHistograms."""
     table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
     kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-    for index, counts in _run(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+
+    def take(result):
+        index, counts = result
         store.adopt(index, store.folder)
         after.add(counts, asphalt.step)
+        return []
+
+    phase = phase_of_stretches(corrected_of_stretch, road_points, arguments, replace(road_points, store=store))
+    yield Asked(phase, road_points.stretches(), 1.0, read=take)
     return store, after.counts
 
 
@@ -333,7 +335,6 @@ def _reason_against(road_points, frame):
 
 
 def _report(before, after, table, points_by_scanner):
-    """_IntensityReport of the counts before and after."""
     rows = table.distance_kind, np.arange(len(table.distance_kind))
     medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)
@@ -349,10 +350,7 @@ def _report(before, after, table, points_by_scanner):
             row.update({f"asphalt_{name}": mean, f"spread_{name}": variation,
                         f"fall_{name}": float(levels[scanner, use].max() / max(levels[scanner, use].min(), 1e-9))})
         report.scanners.append(row)
-    for name, levels in zip(("before", "after"), medians):
-        means = [row[f"asphalt_{name}"] for row in report.scanners]
-        setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
-        setattr(report, f"spread_{name}", _variation(levels[usable], weight[usable])[1])
+    report.spread_before, report.spread_after = (_variation(levels[usable], weight[usable])[1] for levels in medians)
     return report
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import lru_cache
 from os import PathLike
 from typing import Any
 
@@ -17,7 +17,8 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
-from ..execution.phase import THREADS, Executor, Phase, digest
+from ..execution.in_step import Asked, Work, in_step
+from ..execution.phase import THREADS, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
@@ -33,7 +34,6 @@ from .weights import IMAGE
 PRODUCTS_AT_ONCE = 1 << 18
 
 
-_thread = threading.local()   # the kernels of each thread
 Extent = tuple[int, int, int, int]   # first and last column, first and last row of the lattice
 
 
@@ -130,16 +130,14 @@ def _in_cell(units, origin, cell_size):
     return cell, position.astype(np.float32)
 
 
+@lru_cache(maxsize=1)
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
-    """The thread's own kernels: of all cells around a point, of the nearest nine, and of those beyond."""
-    if getattr(_thread, "settings", None) != settings:
-        radius, reach = settings.radius_cells, _reach_of(settings)
-        offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
-                   if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
-        near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
-        _thread.settings = settings
-        _thread.kernels = [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
-    return _thread.kernels
+    """The kernels of all cells around a point, of the nearest nine, and of those beyond; several threads may use them."""
+    reach = _reach_of(settings)
+    offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
+               if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < settings.radius_cells]
+    near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
+    return [_Kernel(settings, cells) for cells in (offsets, near, [offset for offset in offsets if offset not in near])]
 
 
 class _Kernel:
@@ -218,19 +216,27 @@ class _Piece:
     extent: Extent   # Extent of the cells that its points reach
     across: tuple[int, int]   # least and greatest offset of its points, units of 0.1 mm
     step: int   # one of so many points weighs on farther cells
-    limits: tuple[float, float]   # 1 % and 99 % of the intensities about it
+
+    @property
+    def window(self) -> tuple[int, int]:
+        """The road and the number along it of the window whose intensities it is compared with."""
+        return self.road, self.number // IMAGE.pieces_per_window
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
-                         path: str | PathLike | None = None, before: TiledImage | None = None) -> TiledImage:
+                         path: str | PathLike | None = None, before: TiledImage | None = None,
+                         pieces: Sequence[_Piece] | None = None) -> TiledImage:
     """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
 
     before : image of other points of the survey, whose tiles are taken over where they are the same; it is of no use any more
+    pieces : result of `pieces_of_image`, which an earlier stage looked for; None to look here
     """
-    grid, work = _looked(road_points, settings, progress)
+    if pieces is None:
+        pieces, = in_step([pieces_of_image(road_points, settings)], road_points.executor, progress.part(0.0, 0.3))
+    grid, work = _grid_of(pieces, settings)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(PIECE_LENGTH, piece.road, piece.number))))
-                    for piece in dict.fromkeys(piece for _, pieces in work for piece in pieces)}   # most touch several tiles
+    states = {window: road_points.state(*_span(IMAGE.ranking_window, *window)) for window in dict.fromkeys(piece.window for piece in pieces)}
+    image.pieces = {piece: digest((settings, piece, states[piece.window])) for piece in pieces}   # most touch several tiles
     image.places = np.array([(piece.road, piece.number, *piece.extent, *piece.across) for piece in image.pieces], np.int64)
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
@@ -239,13 +245,17 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     with image.new_file(path, before) if path else nullcontext() as file:
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
-        for column, row, values in _tiles(grid, new, road_points, settings, progress.part(0.3, 1.0), executor):
-            image.put(column, row, values)
-            if file is not None:
-                file.write(column, row, values)
-                # compressed by another thread while the next tiles are made
-                file.flush()
-    progress.info(grid.summary)
+        tasks = [new[k:k + IMAGE.tiles_per_task] for k in range(0, len(new), IMAGE.tiles_per_task)]
+        phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
+            *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
+        for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
+            for tile in filter(None, tiles):
+                image.put(*tile)
+                if file is not None:
+                    file.write(*tile)
+                    # compressed by another thread while the next tiles are made
+                    file.flush()
+    progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 
 
@@ -288,32 +298,25 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
                                   f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
-def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:
-    """The grid of the image, and the pieces of road that touch each tile."""
-    if not len(road_points):
-        raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
+def pieces_of_image(road_points: RoadPoints, settings: ImageSettings) -> Work:
+    """The work that looks what there is to interpolate: the pieces of road with points. Intensities may be corrected later."""
     spans = [(road, *(end / IMAGE.ranking_window for end in road_points.store.span(road))) for road in road_points.roads()]
     windows = [(road, k) for road, start, end in spans for k in range(int(np.floor(start)), int(np.ceil(end)))]
     phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
-                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
-    looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
-    pieces = [piece for window in looked for piece in window]
+                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task], listed=IMAGE.looked_windows)
+    return (yield Asked(phase, windows, 1.0, list))
+
+
+def _grid_of(pieces: Sequence[_Piece], settings: ImageSettings) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:
+    """The grid of the image, and the pieces of road that touch each tile."""
+    if not pieces:
+        raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     extents = np.array([piece.extent for piece in pieces], np.int64)
     (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
     return grid, _pieces_by_tile(grid, pieces)
-
-
-def _tiles(grid: _Grid, work: list[tuple[Tile, list[_Piece]]], road_points: RoadPoints, settings: ImageSettings,
-           progress: Progress, executor: Executor) -> Iterator[FilledTile]:
-    """Yield every tile with data, in the order of the road."""
-    tasks = [work[k:k + IMAGE.tiles_per_task] for k in range(0, len(work), IMAGE.tiles_per_task)]
-    phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-        *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
-    for tiles in executor.run(phase, tasks, progress):
-        yield from (tile for tile in tiles if tile is not None)
 
 
 def _span(length, road, number):
@@ -332,25 +335,28 @@ def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, l
 
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
     """The phase that looks what there is to interpolate in some windows, each a road and a number along it: the pieces with points of each."""
-    return [_pieces_of_window(road_points, *window, settings) for window in windows]
-
-
-def _pieces_of_window(road_points, road, number, settings):
-    pieces, values = [], []
-    for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window):
-        points = _points_of(road_points, road, piece)
-        if len(points):
-            step = _sampling_step(points, settings)
+    result = []
+    for road, number in windows:
+        pieces = []
+        for piece, points in _filled_pieces(road_points, road, number):
             d = points.records["d"]
-            pieces.append((road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())), step))
-            values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
-    limits = tuple(np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()) if values else ()
-    return [_Piece(*piece, limits) for piece in pieces]
+            pieces.append(_Piece(road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())),
+                                 _sampling_step(points, settings)))
+        result.append(pieces)
+    return result
 
 
-def _points_of(road_points, road, number):
-    """The points of one piece."""
-    return road_points.window(road, number * PIECE_LENGTH, (number + 1) * PIECE_LENGTH)
+def _limits_of_window(road_points, road, number, settings):
+    """1 % and 99 % of the intensities of a window with points."""
+    values = [points[::max(_sampling_step(points, settings), len(points) // IMAGE.max_ranked_points)].value
+              for _, points in _filled_pieces(road_points, road, number)]
+    return np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()
+
+
+def _filled_pieces(road_points, road, number):
+    """(number, Points) of the pieces of a window that have points."""
+    pieces = range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window)
+    return ((piece, points) for piece in pieces if len(points := road_points.window(*_span(PIECE_LENGTH, road, piece))))
 
 
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
@@ -366,27 +372,26 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
 def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[FilledTile | None]:
     """The phase that makes tiles, None where one has no data; a piece that some of them share is interpolated once."""
     sums: dict[_Piece, _WeightedSums] = {}
+    limits: dict[tuple[int, int], list[float]] = {}
     result = []
     for tile, pieces in tiles:
         check_cancelled()
-        sums.update({piece: _sums_of_piece(road_points, piece, settings) for piece in pieces if piece not in sums})
+        for piece in pieces:
+            if piece.window not in limits:
+                limits[piece.window] = _limits_of_window(road_points, *piece.window, settings)
+            if piece not in sums:
+                sums[piece] = _sums_of_piece(road_points, piece, settings, *limits[piece.window])
         result.append(grid.tile(*tile, [sums[piece] for piece in pieces]))
     return result
 
 
-def _sums_of_piece(road_points, piece, settings):
-    low, high = piece.limits
-
+def _sums_of_piece(road_points, piece, settings, low, high):
     def brightness(value):
-        scaled = value - np.float32(low)
-        scaled /= np.float32(max(high - low, 1e-9))
-        np.maximum(scaled, np.float32(0.0), out=scaled)
-        np.minimum(scaled, np.float32(1.0), out=scaled)
-        scaled *= np.float32(settings.beta)
-        scaled += np.float32(1.0 - settings.beta)
-        return scaled
+        share = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), np.float32(0.0), np.float32(1.0))
+        return share * np.float32(settings.beta) + np.float32(1.0 - settings.beta)
 
-    return _interpolation_sums(_points_of(road_points, piece.road, piece.number), brightness, road_points.origin, settings, piece.step)
+    points = road_points.window(*_span(PIECE_LENGTH, piece.road, piece.number))
+    return _interpolation_sums(points, brightness, road_points.origin, settings, piece.step)
 
 
 class _Grid:
@@ -399,10 +404,6 @@ class _Grid:
     @property
     def geotransform(self) -> tuple[float, ...]:
         return self.column * self.cell, self.cell, 0.0, (self.row + 1) * self.cell, 0.0, -self.cell
-
-    @property
-    def summary(self) -> str:
-        return f"Intensity image: {self.width:,} x {self.height:,} cells of {self.cell:g} m."
 
     def tiles_of(self, extent: Extent) -> list[Tile]:
         """(column, row) of every tile that an extent touches."""
@@ -458,10 +459,9 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     if not places:
         return
     x, y = (np.concatenate(part) for part in zip(*places))
-    left, size, _, top, _, _ = image.geotransform
-    shown = np.isfinite(image.sample(x, y))
-    if shown.mean() < IMAGE.min_shown_share:
+    share = np.isfinite(image.sample(x, y)).mean()
+    if share < IMAGE.min_shown_share:
+        left, size, _, top, _, _ = image.geotransform
         raise RoadExtractionError(
-            f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, y "
-            f"{top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} to {y.max():.1f}, "
-            f"and {100 * shown.mean():.0f} % of them are on it. Give the intensity image that was made from these points.")
+            f"{image.path} does not show these road points, of which {100 * share:.0f} % lie on it. It covers x {left:.1f} to "
+            f"{left + size * image.width:.1f} and y {top - size * image.height:.1f} to {top:.1f}. Give the image made from these points.")

@@ -52,9 +52,8 @@ def check_metric(crs: Any, what: str) -> None:
     """
     flat = horizontal_part(crs)
     if flat.is_geocentric or flat.is_vertical:
-        coordinates = "geocentric coordinates, counted from the centre of the earth" if flat.is_geocentric else "heights alone"
-        raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {coordinates}. Road geometry needs x and y on a map: reproject it to a "
-                                  "projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {'geocentric coordinates' if flat.is_geocentric else 'heights alone'}. "
+                                  "Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
     if flat.is_geographic:
         raise RoadExtractionError(f"{what} is in the geographic CRS {flat.name} (degrees). Road geometry needs metres: reproject it to a projected "
                                   "CRS, such as the UTM zone of the survey, and run again.")
@@ -160,11 +159,11 @@ def _refuse_degrees(files, trajectory_crs):
     """Refuse clouds without a CRS where that of the trajectory does not help: it is geographic and they are not, or there is none and they are."""
     crs = horizontal_part(parse_crs(trajectory_crs))
     if crs is not None and crs.is_geographic and not _in_degrees(files):
-        raise RoadExtractionError(f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees), so the position of one relative "
-                                  "to the other is unknown. Give the CRS of the point cloud by the parameter CRS.")
+        raise RoadExtractionError(
+            f"The point cloud carries no CRS, and the trajectory is in {crs.name} (degrees). Give the CRS of the point cloud by the parameter CRS.")
     if crs is None and _in_degrees(files):
-        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees: it is less than "
-                                  "1 m wide if they are metres. Reproject it to a projected CRS, such as the UTM zone of the survey, and run again.")
+        raise RoadExtractionError("The point cloud carries no CRS, and its coordinates look like longitude and latitude in degrees. "
+                                  "Reproject it to a projected CRS, such as its UTM zone, and run again.")
 
 
 def _bounds(files):
@@ -182,8 +181,8 @@ def _in_degrees(files):
 def crs_note(files: Sequence[Any], given: str, crs: str) -> str:
     """Sentences for the user about the CRS (WKT, "" where unknown) in which a survey is processed, and the one that was given; "" for none."""
     if not crs:
-        return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
-                "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
+        return ("The point cloud carries no CRS, and neither do the results. Where its coordinates are those of a map, give their CRS by the "
+                "parameter CRS and run again.")
     notes = [check_extent(crs, _bounds(files), "The point cloud")]
     stated = next((file.crs for file in files if file.crs), "")
     if given and stated and not same_crs(parse_crs(given), parse_crs(stated)):
@@ -202,9 +201,8 @@ def unit_note(height: float, crs: str) -> str:
     """A note for the user where a cloud without CRS is in feet, as it seems by the height of the sensor above the road, m; "" for none."""
     if crs or not IO.suspicious_sensor_height[0] < height < IO.suspicious_sensor_height[1]:
         return ""
-    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
-            "unit: everything is measured in metres, so curbs and markings would be missed. Set the parameter CRS to the CRS that they are "
-            "in, such as a zone of State Plane in feet.")
+    return (f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet. Set the parameter CRS to theirs, "
+            "such as State Plane in feet.")
 
 
 # Whether a survey lies where its CRS holds, and lengths on the map there are lengths on the ground.
@@ -269,16 +267,16 @@ def check_place(wkt: str, place: tuple[float, float], what: str) -> str:
         turned = place_on_ground(crs, y, x)
         if turned.true_to_scale and _beside(turned, area) == 0:
             raise RoadExtractionError(
-                f"{what} has x and y exchanged: x is about {x:.0f} and y about {y:.0f}, and in its CRS {crs.name} only the place with y as the "
-                f"easting lies in the area of this CRS ({_named(area)}). Export it with the easting as x and the northing as y, and run again.")
+                f"{what} has x and y exchanged: only with y (about {y:.0f}) as the easting it lies in the area of {crs.name} ({_named(area)}). "
+                "Export the easting as x and run again.")
     if outside > IO.max_outside_area and max(abs(x), abs(y)) < IO.max_local:
-        return (f"{what} says that it is in {crs.name}, but its coordinates (about {x:.0f}, {y:.0f}) are those of a local system, or lack their "
-                "leading digits. They are taken as metres as they are; the results lie elsewhere on a map until the coordinates are complete.")
+        return (f"{what} says it is in {crs.name}; its coordinates (about {x:.0f}, {y:.0f}) are those of a local system or lack leading digits. "
+                "They are taken as metres; the map lies elsewhere.")
     if not location.true_to_scale:
         raise _not_true_to_scale(what, crs, place, location, area if outside > IO.min_exchanged else None)
     if outside > IO.max_outside_area:
-        return (f"{what} lies at {_degrees(location)}, outside the area of its CRS {crs.name} ({_named(area)}): if the survey was not made there, "
-                "its CRS is wrong, and so is that of the results. Correct it in the data.")
+        return (f"{what} lies at {_degrees(location)}, outside the area of its CRS {crs.name} ({_named(area)}). If the survey was not made there, "
+                "correct the CRS in the data.")
     return ""
 
 

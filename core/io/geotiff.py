@@ -91,42 +91,28 @@ class IntensityImage:
         return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
             ((top - origin[1]) - np.asarray(y, float)) / self.cell_size
 
-    def sample(self, x: Any, y: Any, origin: Any = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
-        """(N,) float32 image values at places as of `pixel_of`, NaN where there is no data.
-
-        bilinear : interpolate between the centres of four pixels, all of which must hold data; otherwise the pixel that contains the place
-        """
-        column, row = self.pixel_of(x, y, origin)
-        if bilinear:
-            column, row = column - 0.5, row - 0.5
+    def sample(self, x: Any, y: Any, origin: Any = (0.0, 0.0)) -> np.ndarray:
+        """(N,) float32 values of the pixels that contain places, as of `pixel_of`; NaN where there is no data."""
+        column, row = (np.floor(place) for place in self.pixel_of(x, y, origin))
         values = np.full(len(column), np.nan, np.float32)
         if not len(values):
             return values
-        floor_column, floor_row = np.floor(column), np.floor(row)
-        box = [int(end) for whole in (floor_column, floor_row) for end in (whole.min(), whole.max())]
-        if not bilinear and (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= MAX_SAMPLED_WINDOW:
+        box = [int(end) for whole in (column, row) for end in (whole.min(), whole.max())]
+        if (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= MAX_SAMPLED_WINDOW:
             pixels = self.read_pixels(box[0], box[2], box[1] - box[0] + 1, box[3] - box[2] + 1)
-            floor_row -= box[2]
-            floor_row *= pixels.shape[1]
-            floor_row += floor_column
-            floor_row -= box[0]
-            return pixels.ravel().take(floor_row.astype(np.intp))
-        whole_column, whole_row = floor_column.astype(np.int64), floor_row.astype(np.int64)
-        inside = np.flatnonzero((whole_column >= -1) & (whole_row >= -1) & (whole_column < self.width) & (whole_row < self.height))
-        tile = (whole_row[inside] // GEOTIFF_TILE) * (self.width // GEOTIFF_TILE + 2) + whole_column[inside] // GEOTIFF_TILE
+            row -= box[2]
+            row *= pixels.shape[1]
+            row += column
+            row -= box[0]
+            return pixels.ravel().take(row.astype(np.intp))
+        column, row = column.astype(np.int64), row.astype(np.int64)
+        inside = np.flatnonzero((column >= 0) & (row >= 0) & (column < self.width) & (row < self.height))
+        tile = (row[inside] // GEOTIFF_TILE) * (self.width // GEOTIFF_TILE + 1) + column[inside] // GEOTIFF_TILE
         order = inside[np.argsort(tile, kind="stable")]
-        cuts = np.flatnonzero(np.diff(np.sort(tile, kind="stable"))) + 1
-        for rows in np.split(order, cuts) if len(order) else []:
-            c, r = whole_column[rows], whole_row[rows]
+        for rows in np.split(order, np.flatnonzero(np.diff(np.sort(tile))) + 1) if len(order) else []:
+            c, r = column[rows], row[rows]
             c0, r0 = int(c.min()), int(r.min())
-            pixels = self.read_pixels(c0, r0, int(c.max()) - c0 + 2, int(r.max()) - r0 + 2)
-            c, r = c - c0, r - r0
-            if bilinear:
-                u, v = column[rows] - whole_column[rows], row[rows] - whole_row[rows]
-                values[rows] = ((1 - v) * ((1 - u) * pixels[r, c] + u * pixels[r, c + 1])
-                                + v * ((1 - u) * pixels[r + 1, c] + u * pixels[r + 1, c + 1]))
-            else:
-                values[rows] = pixels[r, c]
+            values[rows] = self.read_pixels(c0, r0, int(c.max()) - c0 + 1, int(r.max()) - r0 + 1)[r - r0, c - c0]
         return values
 
     def _dataset(self, pixels):

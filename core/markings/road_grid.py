@@ -5,7 +5,7 @@ Points are put into the cells piece by piece: no array of all points is made.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,6 @@ from .weights import TRACKS
 CELL_SIZE = 0.04   # derived: m, along and across the road: the cells in which points and paint are put
 CELL_UNITS = 400   # derived: the same in units of 0.1 mm
 ROWS_PER_PIECE = 125   # derived: rows of cells: 5 m of road at a time
-POINTS_PER_CELL_BLOCK = 1 << 15   # derived: points put into cells at a time: what fits the processor's cache
 
 
 class RoadGrid:
@@ -35,15 +34,13 @@ class RoadGrid:
     def shape(self) -> tuple[int, int]:
         return self.last - self.first, self.high - self.low
 
-    def stations(self) -> np.ndarray:
-        return (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
-
     def offsets(self) -> np.ndarray:
         return (np.arange(self.low, self.high) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
     def read(self, image: IntensityImage, frame: RoadFrame, road: int) -> np.ndarray:
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
-        x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
+        stations = (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
+        x, y = frame.road(road).to_map(stations[:, None], self.offsets())
         return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
 
 
@@ -63,16 +60,13 @@ class PieceOfRoad:
         records = points.records
         d = records["d"]
         grid = RoadGrid(first, last, int(d.min()) // CELL_UNITS - 1, int(d.max()) // CELL_UNITS + 2)
-        number, occupied = np.empty(len(d), np.int32), np.zeros(grid.shape, bool)
-        for block, cell in cell_numbers(records, grid):
-            number[block] = cell
-            occupied.ravel()[cell] = True
-        return cls(grid, number, occupied, _half_widths(records, first, last), d[::step].copy())
+        cell, occupied = cell_numbers(records, grid), np.zeros(grid.shape, bool)
+        occupied.ravel()[cell] = True
+        return cls(grid, cell, occupied, _half_widths(records, first, last), d[::step].copy())
 
     def within(self, grid: RoadGrid) -> tuple[slice, slice]:
         """Where this piece lies in a larger grid: slices of its rows and columns."""
-        own_grid = self.grid
-        return slice(own_grid.first - grid.first, own_grid.last - grid.first), slice(own_grid.low - grid.low, own_grid.high - grid.low)
+        return slice(self.grid.first - grid.first, self.grid.last - grid.first), slice(self.grid.low - grid.low, self.grid.high - grid.low)
 
     def numbers_in(self, grid: RoadGrid, cell: np.ndarray) -> np.ndarray:
         """Flat numbers in a larger grid of some cells of this one, by their flat numbers here; (N,) int32 each."""
@@ -87,18 +81,16 @@ class PieceOfRoad:
 
     def points_on(self, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ascending indices of the points whose cells are on in (rows, columns) of a mask, and the numbers of their cells."""
-        mask, rows, cells = mask.ravel(), [], []
-        for k in range(0, len(self.cell), POINTS_PER_CELL_BLOCK):
-            cell = self.cell[k:k + POINTS_PER_CELL_BLOCK]
-            inside = np.flatnonzero(mask.take(cell))
-            rows.append(inside + k)
-            cells.append(cell.take(inside))
-        return np.concatenate(rows), np.concatenate(cells)
+        rows = np.flatnonzero(mask.ravel().take(self.cell))
+        return rows, self.cell.take(rows)
 
 
 def cells_of_road(road_points: RoadPoints, road: int, first: int, last: int, step: int = 1) -> list[PieceOfRoad]:
-    """[PieceOfRoad] of the rows from `first` to before `last`."""
-    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in _road_pieces(road_points, road, first, last)]
+    """[PieceOfRoad] of the rows from `first` to before `last`, in order; those without points are left out."""
+    cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
+    pieces = ((begin, end, road_points.window(road, begin * CELL_UNITS * COORDINATE_SCALE, end * CELL_UNITS * COORDINATE_SCALE))
+              for begin, end in zip(cuts[:-1], cuts[1:]))
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in pieces if len(points)]
 
 
 @dataclass(frozen=True)
@@ -110,47 +102,26 @@ class RoadCells:
     half_width: np.ndarray
 
     @classmethod
-    def of(cls, parts: Iterable[PieceOfRoad], first: int, last: int) -> RoadCells | None:
-        """RoadCells of the rows from `first` to before `last` of some PieceOfRoad; None where no point lies in them."""
-        parts = [part for part in parts if part.grid.first < last and part.grid.last > first]
+    def of(cls, parts: Sequence[PieceOfRoad], first: int, last: int) -> RoadCells | None:
+        """RoadCells of the rows from `first` to before `last`, in which the parts lie; None without a part."""
         if not parts:
             return None
-        low, high = min(part.grid.low for part in parts), max(part.grid.high for part in parts)
-        occupied, half_width = np.zeros((last - first, high - low), bool), np.zeros((2, last - first), np.uint16)
+        grid = RoadGrid(first, last, min(part.grid.low for part in parts), max(part.grid.high for part in parts))
+        occupied, half_width = np.zeros(grid.shape, bool), np.zeros((2, last - first), np.uint16)
         for part in parts:
-            begin, end = max(part.grid.first, first), min(part.grid.last, last)
-            rows = slice(begin - part.grid.first, end - part.grid.first)
-            occupied[begin - first:end - first, part.grid.low - low:part.grid.high - low] = part.occupied[rows]
-            half_width[:, begin - first:end - first] = part.half_width[:, rows]
-        # a part may reach farther across beyond these rows
-        columns = np.flatnonzero(occupied.any(axis=0))
-        if not len(columns):
-            return None
-        begin, end = int(columns[0]) - 1, int(columns[-1]) + 2
-        return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
+            rows, columns = part.within(grid)
+            occupied[rows, columns], half_width[:, rows] = part.occupied, part.half_width
+        return cls(grid, occupied, half_width)
 
 
-def _road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> Iterator[tuple[int, int, Points]]:
-    """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
-    cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
-    for begin, end in zip(cuts[:-1], cuts[1:]):
-        points = road_points.window(road, begin * CELL_UNITS * COORDINATE_SCALE, end * CELL_UNITS * COORDINATE_SCALE)
-        if len(points):
-            yield begin, end, points
-
-
-def cell_numbers(records: np.ndarray | Columns, grid: RoadGrid) -> Iterator[tuple[slice, np.ndarray]]:
-    """Yield (slice of the records, (n,) int32 flat numbers of their cells in a grid), some thousand at a time."""
-    s, d = records["s"], records["d"]
-    width = np.int32(grid.shape[1])
-    for k in range(0, len(s), POINTS_PER_CELL_BLOCK):
-        block = slice(k, k + POINTS_PER_CELL_BLOCK)
-        cell = s[block] // np.int32(CELL_UNITS)
-        cell -= np.int32(grid.first)
-        cell *= width
-        cell += d[block] // np.int32(CELL_UNITS)
-        cell -= np.int32(grid.low)
-        yield block, cell
+def cell_numbers(records: np.ndarray | Columns, grid: RoadGrid) -> np.ndarray:
+    """(N,) int32 flat numbers of the cells of records in a grid."""
+    cell = records["s"] // np.int32(CELL_UNITS)
+    cell -= np.int32(grid.first)
+    cell *= np.int32(grid.shape[1])
+    cell += records["d"] // np.int32(CELL_UNITS)
+    cell -= np.int32(grid.low)
+    return cell
 
 
 def _half_widths(records, first, last):
@@ -249,6 +220,16 @@ def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
     return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
 
 
+def closed_mask(cells: np.ndarray, gaps: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """(A, B) bool mask of (K, 2) cells with gaps of so many cells along either axis closed, and the (2,) int cell of mask[0, 0]."""
+    first = cells.min(axis=0)
+    mask = np.zeros(cells.max(axis=0) - first + 1, bool)
+    mask[tuple((cells - first).T)] = True
+    for axis, limit in enumerate(gaps):
+        mask = fill_gaps(mask, limit, axis)
+    return mask, first
+
+
 def track_reach(spacing: np.ndarray) -> np.ndarray:
     """(N,) m that points of one marking may lie apart across the road for the spacing of the scan alone, 0 where points lie close together.
 
@@ -292,13 +273,8 @@ def _fill(mask, row, column, gaps, longest):
     sparse[row[inside] + longest, column[inside]] = gaps[inside]
     on_track = fill_gaps(sparse > 0, longest, 0)
     inner = slice(longest, longest + len(mask))
-    widest = np.where(on_track & (sparse == 0), _carried(sparse), sparse)[inner]
+    met = np.maximum.accumulate(np.where(sparse > 0, np.arange(len(sparse))[:, None], 0), axis=0)   # row of the value last met
+    widest = np.where(on_track & (sparse == 0), np.take_along_axis(sparse, met, axis=0), sparse)[inner]
     mask |= on_track[inner]
     for gap in np.unique(gaps).tolist():
         mask |= fill_gaps(widest >= gap, gap, 1)
-
-
-def _carried(values):
-    """(A, B) the value last met along the first axis."""
-    row = np.maximum.accumulate(np.where(values > 0, np.arange(len(values))[:, None], 0), axis=0)
-    return np.take_along_axis(values, row, axis=0)

@@ -1,31 +1,36 @@
-"""Blocks of points, as they come from files: projected into the road frame, and those near the road chosen, as compact records."""
+"""Blocks of points, as they come from files: projected into the road frame, and those near the road chosen, as compact records in a store."""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..common.parallel import ScratchBuffers
-from .coverage import Coverage
+from ..common.arrays import mask_runs
+from ..common.parallel import ScratchBuffers, check_cancelled
+from ..common.progress import Progress
+from ..execution.phase import Executor, Phase, Recipe
 from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
-from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, valid_points
+from .las.parallel_reader import ParallelCloudReader
+from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, packed_returns, valid_points
+from .las.reader import CloudHeader
 from .las.samples import TimeSlots
 from .store.columns import Columns
-from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, road_of, to_units
-from .store.section_store import PartitionedPoints, SectionStore
-from .trajectory.time_systems import SECONDS_PER_WEEK
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
+from .store.section_store import PartitionedPoints, SectionStore, StoreIndex
+from .trajectory.time_systems import unwrap_week
 from .weights import FRAME, READING
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 
 
 @dataclass
-class BlockSummary:
+class _BlockSummary:
     """What points contribute to the knowledge of the whole cloud."""
 
     census: ScannerCensus = field(default_factory=ScannerCensus)   # of the fields that may distinguish scanners
@@ -34,27 +39,29 @@ class BlockSummary:
     without_time: int = 0   # without_time, excluded: numbers of points at a time of no pass, and of those that are withheld or classified as noise
     excluded: int = 0
 
-    def join(self, other: BlockSummary) -> None:
+    def join(self, other: _BlockSummary) -> None:
         """Add what other points contribute."""
         self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
         self.without_time += other.without_time
         self.excluded += other.excluded
         self.census.join(other.census)
 
-    def add_intensity(self, intensity: np.ndarray) -> None:
-        """Count the (N,) intensities of points."""
-        self.darkest, self.brightest = min(self.darkest, int(intensity.min())), max(self.brightest, int(intensity.max()))
 
 
-class HeightFilter:
+def _cells(start, end, bits):
+    """Number of the first cell of so many bits of a station in units of 0.1 mm, and (C,) m at the middles of those from start to end (m)."""
+    first, last = (int(station / COORDINATE_SCALE) >> bits for station in (start, end))
+    return first, ((np.arange(first, last + 1) << bits) + (1 << bits) // 2) * COORDINATE_SCALE
+
+
+class _HeightFilter:
     """Selects points near the rough height of the road, `drop` metres below the trajectory, up to `above` metres above it."""
 
     def __init__(self, frame: RoadFrame, drop: float, above: float = READING.kept_above_road):
         self._roads = {}
         self._depth = np.uint32((above + READING.kept_below_road + 2 * READING.height_margin) / COORDINATE_SCALE)
         for road in frame.roads:
-            first, last = (int(station / COORDINATE_SCALE) >> READING.height_cell_bits for station in (road.start, road.end))
-            stations = ((np.arange(first, last + 1) << READING.height_cell_bits) + (1 << READING.height_cell_bits) // 2) * COORDINATE_SCALE
+            first, stations = _cells(road.start, road.end, READING.height_cell_bits)
             lowest = frame.track_height(road.number, stations) - drop - READING.kept_below_road - READING.height_margin
             self._roads[road.number] = first, to_units(lowest)
 
@@ -92,18 +99,15 @@ class PointChoice:
 
 
 @dataclass
-class ChosenPoints:
-    """What the points that are kept say of the survey: the HeightHistogram and the Coverage of those on the vehicle's own track, and samples.
+class _ChosenPoints:
+    """What the points that are kept say of the survey."""
 
-    sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
-    """
-
-    histogram: HeightHistogram
-    coverage: Coverage
-    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    histogram: HeightHistogram   # histogram, coverage: of those on the vehicle's own track
+    coverage: _Coverage
+    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
-class BlockReader:
+class _BlockReader:
     """Turns blocks into compact records in the road frame, chooses those near the road and partitions them by section.
 
     Safe to use in several threads. slots : of the points that are sampled
@@ -118,35 +122,29 @@ class BlockReader:
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
-    def ground(self, drop: float) -> HeightFilter:
-        """What is near a road that lies `drop` metres below the trajectory."""
-        return HeightFilter(self.frame, drop, self.choice.above_road)
-
-    def chosen(self, drop: float) -> ChosenPoints:
+    def chosen(self, drop: float) -> _ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), Coverage(self.frame, drop))
+        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), _Coverage(self.frame, drop))
 
-    def unfiltered(self, block: Any, summary: BlockSummary) -> list[tuple[int, Columns]]:
-        """Road and Columns of the points of a block within the corridor, whatever their height; `summary` is updated."""
-        return [(road, points.copy() if near is None else points.take(near).load_all()) for road, points, near in self._near_roads(block, summary)]
+    def rough_drop(self, blocks: Iterable[Any], progress: Progress) -> float:
+        """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
+        samples: list[np.ndarray] = []
+        looked_at = 0
+        for block in blocks:
+            progress.check_cancelled()
+            for road, points, near in self._near_roads(block, _BlockSummary()):
+                looked_at += len(points) if near is None else int(np.count_nonzero(near))
+                samples += [drops[::7] for _, _, drops in self.tracks.drops(road, points, near)] if road >= 0 else []
+            if sum(map(len, samples)) > READING.height_samples or looked_at > READING.max_waiting_points:
+                break
+        drops = np.concatenate([np.empty(0, np.int32), *samples])
+        return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
-    def read(self, block: Any, summary: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+    def read(self, block: Any, summary: _BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
         """Yield the points of a block near the road, ready for the store, until the next ones are asked for; `summary` and `chosen` are updated."""
         for road, points, near in self._near_roads(block, summary, ground, chosen):
             yield self._partition(road, points, near, chosen, store)
-
-    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
-                 store: SectionStore) -> Iterator[PartitionedPoints]:
-        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
-        for road, points in parts:
-            if road < 0:
-                near = ground.level(road_of(road), points["s"], points["z"])
-            else:
-                near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
-                self._count_far(road, points, ~near, chosen)
-            if near.any():
-                yield self._partition(road, points, near, chosen, store)
 
     def _partition(self, road, points, mask, chosen, store):
         if road < 0:
@@ -171,7 +169,7 @@ class BlockReader:
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        summary : BlockSummary, which is updated; ground : HeightFilter, without which points of any height are taken; chosen : ChosenPoints, which
+        summary : _BlockSummary, which is updated; ground : _HeightFilter, without which points of any height are taken; chosen : _ChosenPoints, which
         counts those of other heights. Yields road number, Columns of a piece, and (N,) bool of the points to use, None for all; for ground beyond
         the corridor the number is that of `beside_road`, and stations are the vehicle's.
         """
@@ -184,7 +182,7 @@ class BlockReader:
     def _piece(self, piece, names, axes, summary, ground, chosen):
         buffers = self._scratch.of(len(piece))
         columns = self._columns(piece, names, buffers)
-        summary.add_intensity(columns["intensity"])
+        summary.join(_BlockSummary(darkest=int(columns["intensity"].min()), brightest=int(columns["intensity"].max())))
         usable = self._usable(piece, axes, columns, summary, buffers)
         columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
@@ -266,28 +264,18 @@ class BlockReader:
         if "scanner_channel" in names and flagged(piece):
             columns["scanner"] = np.asarray(piece["scanner_channel"])
         # LAS 1.4 stores both numbers in this way
-        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
+        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else packed_returns(piece)
         return columns
 
     def _placed(self, columns, usable):
         """Fill the columns s and d; (N,) uint16 pass numbers, (N,) bool inside the frame (None for all), and the number of points without a pass."""
-        names = ("x", "y", "time", "s", "d")
-        if usable is None:
-            passes, inside = self._located(*map(columns.get, names))
-            return passes.view(np.uint16), inside, self._lost(passes)
-        rows = np.flatnonzero(usable)
-        columns_of_rows = [columns[name].take(rows) for name in names]
-        located, within = self._located(*columns_of_rows)
-        passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
-        passes[rows], inside[rows] = located, True if within is None else within
-        for name, values in zip(names[3:], columns_of_rows[3:]):
-            columns[name][rows] = values
-        return passes.view(np.uint16), inside, self._lost(located)
-
-    def _lost(self, passes):
-        if not self.choice.has_time or not len(passes) or passes.strides[0] == 0 and passes[0] >= 0:
-            return 0
-        return int(np.count_nonzero(passes < 0))
+        passes, inside = self._located(*map(columns.get, ("x", "y", "time", "s", "d")))
+        lost = 0
+        if self.choice.has_time and (passes.strides[0] != 0 or passes[0] < 0):
+            lost = int(np.count_nonzero(passes < 0 if usable is None else (passes < 0) & usable))
+        if usable is not None:
+            passes = np.where(usable, passes, np.int16(-1))
+        return passes.view(np.uint16), _both(inside, usable), lost
 
     def _located(self, x, y, time, s, d):
         """Pass numbers and `inside`, as by `RoadProjection.project_units`, with or without times."""
@@ -302,16 +290,6 @@ class BlockReader:
         return passes, road >= 0
 
 
-def unwrap_week(time: np.ndarray) -> np.ndarray:
-    """Seconds of the week, continued beyond the end of the week where it ends during the scan; (N,)."""
-    return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
-
-
-def _returns(block):
-    """(N,) return number + 16 * number of returns."""
-    return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
-
-
 def _both(one, other):
     """What two masks have in common, either of which may be None for all."""
     if one is None or other is None:
@@ -319,10 +297,11 @@ def _both(one, other):
     return one & other
 
 
-# The height of the sensor above the road, from the points on the track of the vehicle itself.
+# The height of the sensor above the road, from the points on the track of the vehicle itself, and whether it is one all along the way.
 
 _RESOLUTION_UNITS = round(READING.height_resolution / COORDINATE_SCALE)
 OWN_TRACK_HALF_WIDTH_UNITS = round(READING.own_track_half_width / COORDINATE_SCALE)
+CountedCells = tuple[int, int, np.ndarray]   # number of a pass, its first cell that has points, and the counts from there on
 
 
 class VehicleTracks:
@@ -333,8 +312,7 @@ class VehicleTracks:
         # pass number -> first station cell, offsets and heights of the track at the middle of each cell
         self._tracks: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}
         for p in frame.passes:
-            first, last = (int(station / COORDINATE_SCALE) >> READING.track_cell_bits for station in p.span)
-            middles = ((np.arange(first, last + 1) << READING.track_cell_bits) + (1 << READING.track_cell_bits) // 2) * COORDINATE_SCALE
+            first, middles = _cells(*p.span, READING.track_cell_bits)
             offsets, heights = p.at_station(middles)
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
@@ -377,11 +355,6 @@ def _between(values, least, most):
     return above.view(np.uint32) <= np.uint32(most - least)
 
 
-def estimate_sensor_height(drops: np.ndarray) -> float | None:
-    """A rough sensor height in metres, accurate to one or two decimetres, of (N,) units of 0.1 mm; None for too few points."""
-    return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else None
-
-
 class HeightHistogram:
     """Histogram of the depths below the trajectory of points on the track, by pass; independent of the order of adding.
 
@@ -391,7 +364,6 @@ class HeightHistogram:
     def __init__(self, passes: Iterable[int], about: float):
         self.origin = np.floor(about) - READING.height_range
         self.counts = {number: np.zeros(int(2 * READING.height_range / READING.height_resolution), np.int64) for number in passes}
-        self._lock = threading.Lock()
 
     def add(self, number: int, drops: np.ndarray) -> None:
         """Count points on the track of a pass; (N,) int32 depths below the trajectory in units of 0.1 mm."""
@@ -403,8 +375,7 @@ class HeightHistogram:
         least = int(k.min(initial=size))
         k -= least
         counted = np.bincount(k)
-        with self._lock:
-            self.counts[number][least:least + len(counted)] += counted
+        self.counts[number][least:least + len(counted)] += counted
 
     def join(self, counts: dict[int, np.ndarray]) -> None:
         """Add the counts of another histogram of the same passes and the same first estimate."""
@@ -445,3 +416,226 @@ def _road_height(counts, origin):
     first = max(middle - reach, 0)
     near = np.cumsum(counts[first:middle + reach])
     return round(float(origin + (first + np.searchsorted(near, (near[-1] + 1) // 2)) * READING.height_resolution), 3)
+
+
+class _Coverage:
+    """Counts of the points on the vehicle's own track, by pass, cell of station and depth below the trajectory.
+
+    They do not depend on the order of adding. about : m, first estimate of the height of the trajectory above the road
+    """
+
+    def __init__(self, frame: RoadFrame, about: float):
+        self.frame, self._about = frame, float(to_units(np.array([about]))[0])
+        self._ends = {p.number: (to_units(np.array(p.span)) >> READING.coverage_cell_bits).tolist() for p in frame.passes}
+        # the last two columns are for points beyond all bins: their number, and the sum of their depths in units of 0.1 mm
+        self._counts: dict[int, np.ndarray] = {}
+
+    def add(self, number: int, s: np.ndarray, drops: np.ndarray) -> None:
+        """Count points of a pass: (N,) int32 stations and depths below the trajectory, units of 0.1 mm."""
+        first, last = self._ends[number]
+        cell = np.clip((s >> READING.coverage_cell_bits) - first, 0, last - first)
+        low, bins = int(cell.min()), READING.coverage_bins
+        cell -= low
+        k = np.floor((drops - self._about) * (COORDINATE_SCALE / READING.coverage_step)).astype(np.int64) + bins // 2
+        far = (k < 0) | (k >= bins)
+        k[far] = bins
+        rows = int(cell.max()) + 1
+        counted = np.bincount(cell * (bins + 2) + k, minlength=rows * (bins + 2)).reshape(rows, bins + 2)
+        np.add.at(counted[:, -1], cell[far], drops[far])
+        self._of(number)[low:low + rows] += counted
+
+    def _of(self, number):
+        if number not in self._counts:
+            first, last = self._ends[number]
+            self._counts[number] = np.zeros((last - first + 1, READING.coverage_bins + 2), np.int64)
+        return self._counts[number]
+
+    def counted(self) -> list[CountedCells]:
+        """The counts, to be sent elsewhere."""
+        cells = {number: np.flatnonzero(counts.any(axis=1)) for number, counts in self._counts.items()}
+        return [(number, int(rows[0]), self._counts[number][rows[0]:rows[-1] + 1].copy()) for number, rows in cells.items() if len(rows)]
+
+    def join(self, others: Iterable[CountedCells]) -> None:
+        """Add the counts of other points."""
+        for number, first, counts in others:
+            self._of(number)[first:first + len(counts)] += counts
+
+    def warnings(self) -> tuple[str, str]:
+        """What to tell of stretches that were driven and show a road at another height, and of those that show none; "" for nothing."""
+        moved: list[tuple[int, float, float]] = []
+        holes: list[tuple[int, float, float]] = []
+        metres: list[float] = []
+        for road in self.frame.roads:
+            passes = self.frame.passes_of(road.number)
+            first = min(self._ends[p.number][0] for p in passes)
+            driven, seen = np.zeros((2, max(self._ends[p.number][1] for p in passes) - first + 1), bool)
+            for p in passes:
+                at, counts = self._ends[p.number][0] - first, self._of(p.number)
+                higher = self._levels(counts.sum(axis=0, keepdims=True)) - self._levels(counts)
+                for start, end in _runs(np.abs(higher) > READING.other_level, first + at, READING.least_moved):
+                    moved.append((road.number, *_stations(start, end)))
+                    metres += higher[start - first - at:end - first - at].tolist()
+                seen[at:at + len(counts)] |= counts[:, :-2].any(axis=1) | np.isfinite(higher)
+                driven[at + 1:at + len(counts) - 1] = True
+            where = np.flatnonzero(seen)
+            hole = driven & ~seen
+            hole[:where.min(initial=len(hole))] = hole[where.max(initial=0):] = False
+            # two surveys along one trajectory have more between them than a file that is missing
+            if hole.sum() < len(where):
+                holes += [(road.number, *_stations(start, end)) for start, end in _runs(hole, first, READING.least_hole)]
+        return (f"The trajectory does not keep to one height above the road: along {_named(moved)} the road lies {np.median(metres):+.2g} m from its "
+                "usual height. Heights may be in feet in one file, or of two kinds: export all from one solution." if moved else "",
+                f"No point was kept under the vehicle along {_named(holes)} of the drive, though there are some before and behind. Give all files: "
+                "one may be missing." if holes else "")
+
+    def _levels(self, counts):
+        """m down from the trajectory, less `about`, to where most points of cells lie, of (C, bins + 2) counts; NaN for too few points."""
+        near, far = counts[:, :-2], counts[:, -2]
+        padded = np.pad(near, ((0, 0), (1, 1)))
+        windows = np.stack([padded[:, k:k + near.shape[1]] for k in range(3)])   # each bin with its neighbours
+        peak, rows = windows.sum(axis=0).argmax(axis=1), np.arange(len(counts))
+        weights = windows[:, rows, peak]
+        level = (peak + (weights[2] - weights[0]) / np.maximum(weights.sum(axis=0), 1) + 0.5 - near.shape[1] // 2) * READING.coverage_step
+        beyond = near.sum(axis=1) < READING.least_near_share * far
+        level[beyond] = COORDINATE_SCALE * (counts[beyond, -1] / far[beyond] - self._about)
+        return np.where(counts[:, :-1].sum(axis=1) > READING.min_track_points, level, np.nan)
+
+
+def _runs(chosen: np.ndarray, first: int, least: float) -> Iterator[tuple[int, int]]:
+    """(first, last + 1) of the runs of (C,) chosen cells that are longer than so many metres; `first` is the number of the first cell."""
+    return ((first + a, first + b) for a, b in mask_runs(chosen) if np.subtract(*_stations(b, a)) > least)
+
+
+def _stations(*cells):
+    """m of the starts of cells."""
+    return tuple(COORDINATE_SCALE * (cell << READING.coverage_cell_bits) for cell in cells)
+
+
+def _named(stretches):
+    longest = sorted(stretches, key=lambda stretch: stretch[1] - stretch[2])[:READING.told_stretches]
+    places = "; ".join(f"road {road}, station {start:.0f} to {end:.0f} m" for road, start, end in longest)
+    return f"{sum(end - start for _, start, end in stretches):.0f} m ({places}{'; …' if len(stretches) > len(longest) else ''})"
+
+
+# Files are read into the section store part by part, by whoever runs phases. The height of the road is estimated from a look at the first blocks.
+
+
+@dataclass(frozen=True)
+class _PointsRead:
+    """Points in a section store, and what they say of the whole survey."""
+
+    store: SectionStore
+    summary: _BlockSummary   # of all points
+    slots: TimeSlots   # of the points by which scanners are distinguished that no field distinguishes
+    sampled: list[tuple[np.ndarray, np.ndarray]]   # their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    moved: str   # moved, holes: as of `_Coverage.warnings`
+    holes: str
+
+
+def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
+                progress: Progress) -> _PointsRead:
+    """Read all files into a store as a phase, `block` points at a time, after a look at the first of them."""
+    slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
+    blocks, summary, sampled = _BlockReader(frame, choice, slots), _BlockSummary(), []
+    with ParallelCloudReader(choice.layers) as readers:
+        ranges = list(readers.ranges(files, block))
+        drop = blocks.rough_drop((points for number, *part in ranges for points in readers.points(files[number], *part, block)), progress)
+    chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
+    phase = Phase(_read_part, source, (), source.place, _join_parts)
+    points = block if store.folder is None else READING.part_points   # threads read block by block
+    if store.folder is not None:
+        store.folder.mkdir(exist_ok=True)
+    for part in executor.run(phase, source.items(points), progress):
+        summary.join(part.summary)
+        chosen.histogram.join(part.drops)
+        chosen.coverage.join(part.coverage)
+        sampled.append((part.times, part.places))
+        store.adopt(part.index, store.folder)
+    return _PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings())
+
+
+# The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
+
+
+@dataclass(frozen=True)
+class _PartOfFiles:
+    """What a range of points shows: where those lie that were kept, and what all contribute to the knowledge of the cloud."""
+
+    index: StoreIndex
+    summary: _BlockSummary
+    drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
+    coverage: list[CountedCells]   # of its _Coverage
+    times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
+    places: np.ndarray
+
+
+class _PartsOfFiles:
+    """Files whose points are read part by part into the folder of a store; several threads may do so.
+
+    store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
+    ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
+    """
+
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: np.ndarray, block: int):
+        self.files, self.store, self.reader = files, store, reader
+        self.ground = _HeightFilter(reader.frame, drop, reader.choice.above_road)
+        self.drop, self.ranges, self.block = drop, ranges, block
+        self.clouds = ParallelCloudReader(reader.choice.layers)
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes read the same."""
+        store = self.store
+        files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
+        return Recipe("core.survey.blocks:_parts_of_files", dict(
+            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
+            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
+            ranges=self.ranges, block=self.block))
+
+    def items(self, points: int) -> list[tuple[int, int]]:
+        """(first, last + 1) numbers of blocks that have about so many points together."""
+        ends = np.cumsum(self.ranges[:, 2])
+        cuts = np.searchsorted(ends, np.arange(points, self.ranges[:, 2].sum(), points)) + 1
+        bounds = np.unique(np.r_[0, cuts, len(ends)]).tolist()
+        return list(zip(bounds[:-1], bounds[1:]))
+
+    def place(self, item: tuple[int, int]) -> str:
+        """What messages call blocks."""
+        number, first, _ = self.ranges[item[0]].tolist()
+        last, begin, count = self.ranges[item[1] - 1].tolist()
+        last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
+        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
+
+
+def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, frame: RoadFrame, choice: PointChoice, slots: TimeSlots,
+                    drop: float, **others: Any) -> _PartsOfFiles:
+    """What `_PartsOfFiles.recipe` describes."""
+    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
+    reader = _BlockReader(frame, choice, slots)
+    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
+
+
+def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
+    """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
+    chosen, summary = source.reader.chosen(source.drop), _BlockSummary()
+    with source.store.part() as store:
+        for number, first, count in source.ranges[item[0]:item[1]].tolist():
+            for points in source.clouds.points(source.files[number], first, count, source.block):
+                check_cancelled()
+                for part in source.reader.read(points, summary, source.ground, chosen, store):
+                    store.add(part)
+    index = store.index()
+    sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), *(np.concatenate(column) for column in sampled))
+
+
+def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
+    """One part of several that follow each other."""
+    summary = _BlockSummary()
+    drops: dict[int, np.ndarray] = {}
+    for part in parts:
+        summary.join(part.summary)
+        drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
+    coverage = [cells for part in parts for cells in part.coverage]
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage,
+                        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))

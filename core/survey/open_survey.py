@@ -21,7 +21,7 @@ from ..lazy import pyproj
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
-from .blocks import PointChoice, unwrap_week
+from .blocks import PointChoice, read_files
 from .frame.passes import decimate_by_distance
 from .frame.road_frame import RoadFrame, build_frame
 from .frame.row_table import SigmaAlong
@@ -33,9 +33,8 @@ from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
 from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
-from .survey_reader import SurveyReader
 from .trajectory.meaning import EARTH_RADIUS
-from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, wrapped_week
+from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, VEHICLE
 
@@ -96,8 +95,7 @@ def _kept_survey(work, executor, read, progress):
     states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
     name = f"survey-{digest((code_digest(), states, trajectory, settings))}"
     try:
-        earlier = _found_survey(work, name, files, progress)
-        if earlier is not None:
+        if earlier := _found_survey(work, name, files, progress):
             return earlier
         listener = RememberedMessages(progress)
         parts = WorkFolder(str(work.path / f"{name}.parts"))
@@ -110,10 +108,9 @@ def _kept_survey(work, executor, read, progress):
             survey = read_survey(*read, listener, shared)
         except RoadExtractionError:
             # another run, which was quicker, has removed the parts
-            earlier = _found_survey(work, name, files, progress)
-            if earlier is None:
-                raise
-            return earlier
+            if earlier := _found_survey(work, name, files, progress):
+                return earlier
+            raise
         work.finish(name, survey.folder, listener.messages)
         parts.discard()
         return survey
@@ -172,24 +169,24 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from)
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame),
-                         None if shared is None else shared.points)
-    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity))
+    executor, folder = (THREADS, None) if shared is None else (shared.reading, shared.points)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame), folder)
+    choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
-    _read_points(reader, files, settings.block, shared, progress.part(0.0, read_at))
-    _say_left_out(files, frame, reader, settings, progress)
-    height = float(np.mean(list(reader.heights.values())))
-    feet = _check_height(height, crs, (fitted.seen, reader.moved), progress)
-    survey = _survey_of(files, frame, reader, settings, crs, progress)
+    parts_at = read_at if shared is None else READING.parts_progress * read_at
+    read = read_files(files, frame, store, choice, settings.block, executor, progress.part(0.0, parts_at))
+    _say_left_out(files, frame, read, settings, progress)
+    height = float(np.mean(list(read.heights.values())))
+    feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
+    survey = _survey_of(files, frame, read, settings, crs, progress)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
-    parts_at = read_at if shared is None else READING.parts_progress * read_at
-    _tell_scanners_apart(survey, reader, progress.part(parts_at, parts_at))
+    _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
     _put_in_order(survey, shared, progress.part(parts_at, read_at))
-    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
-    _see_passes(survey, settings.fit_passes, store, shared, progress)
+    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
+    _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
     _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
     if shared is not None:
@@ -206,25 +203,18 @@ def _intensity_source(samples, settings, one_scale, progress):
     return intensity, rounding
 
 
-def _read_points(reader, files, block, shared, progress):
-    if shared is None:
-        reader.read(files, block, THREADS, progress)
-    else:
-        shared.points.mkdir(exist_ok=True)
-        reader.read(files, block, shared.reading, progress.part(0.0, READING.parts_progress))
-
-
-def _survey_of(files, frame, reader, settings, crs, progress):
+def _survey_of(files, frame, read, settings, crs, progress):
     """The Survey of points as they were read."""
-    total, store = sum(file.count for file in files), reader.store
-    scanner_field, scanners = reader.summary.census.choose(settings.scanner_field)
-    return Survey(files, frame, store, crs, reader.heights, scanner_field, scanners, reader.summary.brightest > reader.summary.darkest,
+    total, store = sum(file.count for file in files), read.store
+    scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
+    return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
 
 
 def _put_in_order(survey, shared, progress):
     if shared is not None:
         shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
         survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
@@ -235,15 +225,15 @@ def _say_brightness(survey, intensity, settings, samples, progress):
         progress.warn(note)
 
 
-def _lay_scanners_and_passes(survey, again, feet, shared, progress):
+def _lay_scanners_and_passes(survey, again, feet, progress):
     """Lay scanners on each other and, where they drive `again`, passes; m that the mounting of scanners leaves open across."""
-    folder, mounted = shared.points if shared else None, 0.0
+    mounted = 0.0
     if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
         read_at = READING.read_progress if again else 1.0
-        mounted = lay_scanners(survey, progress.part(read_at, read_at), folder)
+        mounted = lay_scanners(survey, progress.part(read_at, read_at))
     if again:
-        adjust_passes(survey, progress.part(READING.read_progress, 1.0), folder)
+        adjust_passes(survey, progress.part(READING.read_progress, 1.0))
     return mounted
 
 
@@ -280,18 +270,18 @@ def _frame_of(files, trajectory, crs, has_time, time_note, progress):
     return frame
 
 
-def _say_left_out(files, frame, reader, settings, progress):
+def _say_left_out(files, frame, read, settings, progress):
     """Refuse clouds that do not lie at the road, and tell of points that were not taken and of heights that change."""
-    total, left = sum(file.count for file in files), reader.summary
-    if not reader.store.count:
-        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    total, left = sum(file.count for file in files), read.summary
+    if not read.store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, read, settings.corridor))
     if left.excluded:
         tell = progress.warn if left.excluded > READING.much_excluded * total else progress.info
         tell(f"{left.excluded:,} of {total:,} points were left out: they are withheld or classified as noise (LAS classes 7 and 18).")
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. Give the whole trajectory.")
-    for doubt in filter(None, (reader.moved, reader.holes)):
+    for doubt in filter(None, (read.moved, read.holes)):
         progress.warn(doubt)
 
 
@@ -308,12 +298,8 @@ def _check_height(height, crs, explained, progress):
     return feet
 
 
-def _see_passes(survey, fit_passes, measured, shared, progress):
-    """Put points that were moved since they were measured in order, and tell where roads and carriageways do not fit each other."""
-    if shared is not None and survey.store is not measured:
-        for file in shared.ordered.iterdir():
-            file.unlink()
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+def _see_passes(survey, fit_passes, progress):
+    """Tell where roads and carriageways do not fit each other."""
     if len(survey.frame.roads) > 1:
         for warning in warnings_of_levels(survey.frame):
             progress.warn(warning)
@@ -331,9 +317,9 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
     return max((length for length in lengths if length * density <= READING.section_points), default=STORE.section_length)
 
 
-def _sampled(survey, reader, progress):
+def _sampled(survey, read, progress):
     """Times and places of the points sampled, each once, and a word on those that files have in common."""
-    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *reader.sampled))
+    time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *read.sampled))
     if len(survey.files) == 1 or not may_overlap(survey.files):
         return time, place
     rows = distinct_rows(time, place)
@@ -343,7 +329,7 @@ def _sampled(survey, reader, progress):
     return time[rows], place[rows]
 
 
-def _tell_scanners_apart(survey, reader, progress):
+def _tell_scanners_apart(survey, read, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
     from .estimation.estimate import splitter_of
     from .estimation.interleaved import told_apart
@@ -351,12 +337,12 @@ def _tell_scanners_apart(survey, reader, progress):
 
     if not survey.has_time:
         return
-    time, place = _sampled(survey, reader, progress)
+    time, place = _sampled(survey, read, progress)
     if len(survey.files) > 1:
         check_measured_once(time, place * COORDINATE_SCALE)
     if len(survey.scanners) > 1 or not len(time) or time.min() == time.max():
         return
-    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), read.slots.stride)
     survey.splitter = splitter_of(samples, progress)
     if survey.splitter is not None:
         survey.scanners = list(range(survey.splitter.poses.scanners))
@@ -373,7 +359,8 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
         return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    sampled = _sampled_times(files)
+    with ParallelCloudReader(("gps_time",)) as readers:   # a few points of every file that has any, its last ones among them
+        sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
     times = np.concatenate([time for _, time in sampled])
     if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
@@ -413,12 +400,6 @@ def _said_of_times(frame):
     gaps.sort(key=lambda gap: gap[0] - gap[1])
     named = "".join(f", not from {last:.1f} s to {first:.1f} s" for last, first in gaps[:READING.told_stretches])
     return f"from {spans[0][0]:.1f} s to {spans[-1][1]:.1f} s{named}{', …' if len(gaps) > READING.told_stretches else ''}"
-
-
-def _sampled_times(files):
-    """[(path, (N,) gps_time)] of a few points of every file that has any, its last ones among them."""
-    with ParallelCloudReader(("gps_time",)) as readers:
-        return [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
 
 
 def _check_extent(files, frame, crs, trajectory_crs, progress):
@@ -483,11 +464,11 @@ def _angles_exchanged(x, y, crs):
     return to_degrees.transform(lat, lon, direction="INVERSE")
 
 
-def _no_overlap(files, frame, reader, corridor):
-    if reader.summary.excluded == sum(file.count for file in files):
+def _no_overlap(files, frame, read, corridor):
+    if read.summary.excluded == sum(file.count for file in files):
         return "All points are withheld or classified as noise (LAS classes 7 and 18). Give the cloud as it was before its classification."
-    if reader.summary.without_time:
-        return (f"No point was measured while the trajectory was driven: {reader.summary.without_time} points lie outside its time, "
+    if read.summary.without_time:
+        return (f"No point was measured while the trajectory was driven: {read.summary.without_time} points lie outside its time, "
                 f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
     return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
             "use one CRS.")
@@ -512,14 +493,12 @@ def _look_ahead(survey):
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
     # most of the time goes into putting the points of these sections in order
-    parts = [part for of_section in ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled) for part in of_section]
-    ahead, speed = zip(*parts) if parts else ([np.empty(0)], [np.empty(0)])
-    return np.concatenate(ahead), np.concatenate(speed)
+    return np.concatenate([np.empty((2, 0)), *ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled)], axis=1)
 
 
 def _look_ahead_in_section(survey, key):
-    """The same of one section, by pass: list of (ahead, speed)."""
-    points, parts = survey.section(*key), []
+    """The same of one section, (2, N)."""
+    points, parts = survey.section(*key), [np.empty((2, 0))]
     if len(points) > READING.clock_points_per_section:
         points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
     s, d, time, owner = points.s, points.d, points.time, points.pass_number
@@ -528,5 +507,5 @@ def _look_ahead_in_section(survey, key):
         on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
         rows = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
         now, soon = (p.station_at(time[rows] + wait) for wait in (0.0, 0.5))
-        parts.append((p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)))
-    return parts
+        parts.append(np.stack([p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)]))
+    return np.concatenate(parts, axis=1)

@@ -16,6 +16,7 @@ from ..io.crs import as_in_file, parse_crs
 from ..io.local_files import unfinished_path
 from ..lazy import laspy
 from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
+from .las.point_fields import packed_returns
 from .las.reader import cloud_crs, open_cloud, read_blocks
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
@@ -81,15 +82,15 @@ ROAD_CLASS = 11  # source: ASPRS, road surface
 MILLIMETRE = 1e-3   # source: definition; m of widths and spacings in the file
 
 # stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
-EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
-                ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
-                ("half_width", "uint16", "Half width of the road", MILLIMETRE), ("covered", "uint8", "Beneath something on the road", None)]
-CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
-CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
-SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", MILLIMETRE)
-COPIED_FIELDS = {"time": "gps_time", "intensity": "intensity", "source": "point_source_id", "pass_number": "pass"}   # nosec B105
-SCALED_FIELDS = (("s", "station_m", COORDINATE_SCALE), ("d", "offset_m", COORDINATE_SCALE), ("half_width", "half_width", MILLIMETRE),
-                 ("spacing", "spacing", MILLIMETRE))
+# a column of the records, its field in the file, m of a whole number of it (None for what is no length), and of extra fields type and description
+FIELDS = (("time", "gps_time", None), ("intensity", "intensity", None), ("source", "point_source_id", None), ("", "road", None, "uint16", "Road"),
+          ("pass_number", "pass", None, "uint16", "Pass"), ("scanner", "scanner", None, "uint8", "Scanner"),
+          ("s", "station_m", COORDINATE_SCALE, "int32", "Station along the road"),
+          ("d", "offset_m", COORDINATE_SCALE, "int32", "Offset, left positive"),
+          ("half_width", "half_width", MILLIMETRE, "uint16", "Half width of the road"),
+          ("covered", "covered", None, "uint8", "Beneath something on the road"),
+          ("corrected", "intensity_corrected", None, "float32", "Intensity, range corrected"),
+          ("cluster", "cluster", None, "int32", "Cluster of paint"), ("spacing", "spacing", MILLIMETRE, "uint16", "Spacing across the road"))
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
@@ -112,12 +113,11 @@ def _header(road_points):
     # times are written as they were read
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.generating_software = "Lanewright"
-    extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else []) \
-        + ([SPACING_FIELD] if road_points.has_spacing else [])
+    there = {"corrected": road_points.has_corrected, "cluster": road_points.has_cluster, "spacing": road_points.has_spacing}
     header.add_extra_dims([
-        laspy.ExtraBytesParams(name=name, type=kind, description=text,
+        laspy.ExtraBytesParams(name=name, type=extra[0], description=extra[1],
                                **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
-        for name, kind, text, scale in extra])
+        for column, name, scale, *extra in FIELDS if extra and there.get(column, True)])
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
     header.vlrs.extend(sigma_to_record(road_points.pass_sigma))
@@ -145,21 +145,12 @@ def _record(road_points, road, number, header):
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
     for name, moved, metres in zip("xyz", off, metres_of_file(header, road_points.crs)):
         out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / metres)
-    out["gps_time"] = records["time"]
-    out["intensity"] = records["intensity"]
-    out["point_source_id"] = records["source"]
     out["return_number"], out["number_of_returns"] = records["returns"] & 15, records["returns"] >> 4
     out["classification"] = np.full(len(records), ROAD_CLASS, np.uint8)
-    out.array["road"], out.array["pass"] = road, records["pass_number"]
-    out.array["scanner"] = records["scanner"]
-    out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
-    out.array["half_width"], out.array["covered"] = records["half_width"], records["covered"]
-    if road_points.has_corrected:
-        out.array["intensity_corrected"] = records["corrected"]
-    if road_points.has_cluster:
-        out.array["cluster"] = records["cluster"]
-    if road_points.has_spacing:
-        out.array["spacing"] = records["spacing"]
+    out.array["road"] = road
+    for name, field, *_ in FIELDS:
+        if name and field in out.array.dtype.names:
+            out.array[field] = records[name]
     return out
 
 
@@ -199,13 +190,9 @@ def _read_records(block, names, scales, dtype):
     # another program may have rewritten the file with its own scale
     for name, scale in zip("xyz", scales):
         records[name] = _whole(np.asarray(block[name.upper()]), scale / COORDINATE_SCALE)
-    for name, source in COPIED_FIELDS.items():
-        records[name] = block[source]
-    records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
-    for name, source, unit in SCALED_FIELDS:
-        if source in names:
-            records[name] = np.rint(np.asarray(block[source], float) / unit)
-    records["corrected"] = block["intensity_corrected"] if "intensity_corrected" in names else np.nan
-    for name in ("scanner", "cluster", "covered"):
-        records[name] = block[name] if name in names else 0
+    records["corrected"] = np.nan
+    for name, field, unit, *_ in FIELDS:
+        if name and field in names:
+            records[name] = block[field] if unit is None else np.rint(np.asarray(block[field], float) / unit)
+    records["returns"] = packed_returns(block)
     return records

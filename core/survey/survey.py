@@ -11,15 +11,16 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import THREADS, Executor, Recipe, read_plain, write_plain
+from ..execution.phase import THREADS, Executor, Phase, Recipe, read_plain, write_plain
 from .adjustment.register import PassCorrections
 from .estimation.interleaved import ScannerSplitter
 from .frame.road_frame import RoadFrame
-from .las.point_fields import INTENSITY_SOURCES
+from .las.point_fields import INTENSITY_SOURCES, numbers_by_value
 from .las.reader import CloudHeader
-from .store.records import Points, road_of
-from .store.section_store import SectionStore, opened_store
-from .survey_reader import Finishing, UnorderedPoints
+from .store.array_file import close_files
+from .store.columns import Columns
+from .store.records import COORDINATE_SCALE, Points, road_of
+from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import FRAME, LAS, READING
 
 SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.plain"   # of a survey that other processes open
@@ -72,7 +73,7 @@ class Survey:
     splitter: ScannerSplitter | None = None   # distinguishes scanners that no field distinguishes; None where there is no need
 
     def __post_init__(self) -> None:
-        self.store.finish = self._finished
+        self.store.finish = lambda road, records: self.finishing(road, records)
 
     def recipe(self, folder: Path) -> Recipe:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
@@ -88,10 +89,15 @@ class Survey:
         write_plain(folder / SURVEY_FILE, dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED}))
         self.folder = folder
 
-    def put_in_order(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
-        """Put the points in order, in a folder that the executor's workers see, as they see that of the store."""
-        finishing = None if self.store.finish is None else self.finishing
-        UnorderedPoints(self.store, finishing, folder).put_in_order(executor, self.stretch, progress)
+    def put_in_order(self, folder: Path | None, executor: Executor = THREADS, progress: Progress = Progress(), moves: Any = None) -> None:
+        """Put the points in order, in a folder that the executor's workers see, as they see that of the store; `moves` : as of _UnorderedPoints."""
+        source = _UnorderedPoints(self.store, None if self.store.finish is None else self.finishing, folder, moves)
+        length, items = self.store.section_length, self.store.stretches(self.store.numbers())
+        phase = Phase(_order_sections, source, (), lambda item: self.stretch(item[0], item[1] * length, item[2] * length))
+        roads = [None, *(road for road, *_ in items), None]
+        items = [(road, first - source.beyond * (before != road), end + source.beyond * (after != road))
+                 for (road, first, end), before, after in zip(items, roads, roads[2:])]
+        self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), folder)
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -111,12 +117,9 @@ class Survey:
         return Points(self.store.section(road, number))
 
     @property
-    def finishing(self) -> Finishing:
+    def finishing(self) -> _Finishing:
         """What the points of a section are finished with before they are put in order."""
-        return Finishing(self.frame, self.sensor_height, self.scanner_field, self.scanners, self.splitter, self.above_road)
-
-    def _finished(self, road, records):
-        return self.finishing(road, records)
+        return _Finishing(self.frame, self.sensor_height, self.scanner_field, self.scanners, self.splitter, self.above_road)
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """(N,) local z of the road under the track at (N,) stations, accurate to decimetres."""
@@ -127,3 +130,85 @@ def survey_in_folder(folder: str) -> Survey:
     """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
     fields = read_plain(Path(folder) / SURVEY_FILE)
     return Survey(files=[], store=opened_store(folder, **fields.pop("store")), folder=Path(folder), **fields)
+
+
+# The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
+
+class _UnorderedPoints:
+    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are.
+
+    moves : `moved` gives Columns of moved points, and `reach` by how many m of station at most; None where points stay
+    beyond : sections into which points may move
+    """
+
+    def __init__(self, store: SectionStore, finishing: _Finishing | None, folder: str | Path | None, moves: Any = None):
+        self.store, self.finishing, self.folder, self.moves = store, finishing, None if folder is None else Path(folder), moves
+        self.beyond = 0 if moves is None else int(np.ceil(moves.reach / store.section_length))
+        store.finish = finishing
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the points."""
+        store = Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.store.folder), **self.store.contents()))
+        return Recipe("core.survey.survey:_UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder), moves=self.moves))
+
+    def moved_to(self, stretch: Stretch) -> SectionStore:
+        """A store of the points that may lie in a stretch once they are moved."""
+        (road, first, end), store = stretch, SectionStore(self.store.dtype, self.store.section_length)
+        ends = (np.array([first, end]) * store.section_length + [-self.moves.reach, self.moves.reach]) / COORDINATE_SCALE
+        for section in range(first - self.beyond, end + self.beyond):
+            records = self.store.section(road, section)
+            store.append(road, self.moves.moved(records[slice(*np.searchsorted(records["s"], ends).tolist())]))
+        return store
+
+
+def _order_sections(source: _UnorderedPoints, item: Stretch) -> StoreIndex:
+    """The phase: the points of some sections, in order, in a file of the folder."""
+    try:
+        store = source.store if source.moves is None else source.moved_to(item)
+        with SectionStore(store.dtype, store.section_length, source.folder).part() as part:
+            return store.written_in_order(store.in_stretch(item), part)
+    finally:
+        # they are removed when all is in order, which Windows refuses for files that are open
+        close_files()
+
+
+# What is done with the points of a section before they are put in order: scanners are numbered, and those far above or below the road go.
+
+
+@dataclass(frozen=True)
+class _Finishing:
+    """Finishes the points of sections: numbers their scanners from 0, and tells those near the height of the road.
+
+    scanner_field, scanners : LAS field that identifies the scanners, None if there is one, and its values, see `ScannerCensus.choose`
+    """
+
+    frame: RoadFrame
+    sensor_height: dict[int, float]   # {pass number: metres from the trajectory down to the road}
+    scanner_field: str | None
+    scanners: list[Any]
+    splitter: ScannerSplitter | None   # distinguishes scanners that no field distinguishes; None where there is no need
+    above_road: float   # metres above the road up to which points are kept
+
+    def __call__(self, road: int, records: Columns) -> np.ndarray | None:
+        """Number the scanners of (N,) records of a section, N > 0, and tell which lie near the height of the road: (N,) bool, None for all."""
+        if self.splitter is not None:
+            records["scanner"] = self.splitter.numbers(records["time"], np.stack([records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)
+        elif self.scanner_field is None:
+            records["scanner"] = 0
+        else:
+            numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
+            records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
+        # only records near the limits are compared with the height at their own station
+        z = records["z"]
+        below, above = (READING.kept_below_road, self.above_road) if road >= 0 else (READING.level_height, READING.level_height)
+        # heights of the road at fixed stations, of which `first` is the number of the first
+        first, last = (int(np.floor(end * COORDINATE_SCALE / READING.road_height_step)) for end in (records["s"].min(), records["s"].max()))
+        nodes = self.frame.track_height(road_of(road), np.arange(first, last + 2) * READING.road_height_step, self.sensor_height)
+        doubtful = np.flatnonzero((z < (nodes.max() - below) / COORDINATE_SCALE + 1)
+                                  | (z > (nodes.min() + above) / COORDINATE_SCALE - 1))
+        node = records["s"][doubtful] * COORDINATE_SCALE / READING.road_height_step - first
+        k = node.astype(np.int64)
+        h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (node - k) * (nodes[k + 1] - nodes[k]))
+        near = np.ones(len(records), bool)
+        near[doubtful] = (h > -below) & (h < above)
+        return None if near[doubtful].all() else near

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..common.setting import table
 
-@dataclass(frozen=True)
-class _FrameWeights:
+
+@table
+class FRAME:
     """Which parts of a drive run on one road, and its reference line."""
 
     track_step: float = 2.0   # m between the positions that are compared
@@ -46,11 +46,8 @@ class _FrameWeights:
     corridor: float = 25.0   # m either side of the reference line
 
 
-FRAME = _FrameWeights()
-
-
-@dataclass(frozen=True)
-class _RegisterWeights:
+@table
+class REGISTER:
     """Offsets between two passes over one road, and between two scanners."""
 
     correction_step: float = 10.0   # m of station between nodes
@@ -86,11 +83,8 @@ class _RegisterWeights:
     sigma_reach: float = 25.0   # m of road either way over which passes are compared: less would be the noise of single offsets
 
 
-REGISTER = _RegisterWeights()
-
-
-@dataclass(frozen=True)
-class _AdjustWeights:
+@table
+class ADJUST:
     """Corrections of passes from their offsets, and which of them are told."""
 
     agreement_plan: float = 0.020   # m: a road stays as measured if nine tenths of its offsets are less
@@ -117,11 +111,8 @@ class _AdjustWeights:
     least_told_move: float = 0.005   # m; less is not named in the warning
 
 
-ADJUST = _AdjustWeights()
-
-
-@dataclass(frozen=True)
-class _LatticeWeights:
+@table
+class LATTICE:
     """The scan lines of a scanner, and the turns of its mirror."""
 
     rotation_samples: int = 6   # places along a pass at which the frequency is sought
@@ -154,11 +145,8 @@ class _LatticeWeights:
     min_rotation_peak: float = 0.5   # of the spectrum at the rotation: 1 of points that all lie on scan lines, near 0 of shuffled times
 
 
-LATTICE = _LatticeWeights()
-
-
-@dataclass(frozen=True)
-class _StoreWeights:
+@table
+class STORE:
     """Points by section: how many are mapped and worked on at a time."""
 
     section_length: float = 5.0   # m of station; results do not depend on it
@@ -170,11 +158,8 @@ class _StoreWeights:
     open_files: int = 64   # finished files that are held open: a system lets a program open some hundred (macOS 256)
 
 
-STORE = _StoreWeights()
-
-
-@dataclass(frozen=True)
-class _LasWeights:
+@table
+class LAS:
     """Reading LAS and LAZ files."""
 
     points_looked_at: int = 1000   # points by which it shows whether records are points, and where points lie
@@ -187,7 +172,6 @@ class _LasWeights:
     points_per_sample: int = 1000   # points looked at in each of these places
     points_per_block: int = 400_000   # points decoded at a time
     points_per_range: int = 50_000   # points of which it is noted where they lie: those that LASzip compresses together
-    place_cell: float = 10.0   # m: cells by which it is noted: some lengths of road that 50,000 points cover
     remembered_points: int = 6_000_000   # points of the places looked at last, 14 bytes each: of some hundred metres of a road
     remembered_surveys: int = 8   # surveys of which it is remembered where their points lie
     max_header_scale: float = 1e3   # m per stored integer: a coarser scale describes no place on earth
@@ -216,11 +200,8 @@ class _LasWeights:
     farthest_height: float = 2e4   # m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
 
 
-LAS = _LasWeights()
-
-
-@dataclass(frozen=True)
-class _ReadingWeights:
+@table
+class READING:
     """Reading a survey: which points are kept, how much at a time, and when clock and height of the trajectory are doubted."""
 
     kept_above_road: float = 3.5   # m: vehicles that hide a curb stand above the road
@@ -267,11 +248,8 @@ class _ReadingWeights:
     max_correction: float = 10.0   # m: no pass is moved farther when passes are adjusted
 
 
-READING = _ReadingWeights()
-
-
-@dataclass(frozen=True)
-class _TrajectoryWeights:
+@table
+class TRAJECTORY:
     """Reading a trajectory and cleaning it."""
 
     most_at_once: float = 50.0   # m driven between positions of one time: a second of a fast drive
@@ -318,11 +296,8 @@ class _TrajectoryWeights:
     max_course_rows: int = 5000   # courses of a drive that are compared
 
 
-TRAJECTORY = _TrajectoryWeights()
-
-
-@dataclass(frozen=True)
-class _TrackWeights:
+@table
+class TRACK:
     """The first track of a trajectory from the cloud alone, and the ridge of density of a cloud without times."""
 
     max_samples: int = 6_000_000   # points held in memory: 250 MB while they are sorted
@@ -360,11 +335,8 @@ class _TrackWeights:
     max_cells: int = 4_000_000   # cells of the density: 1 km^2
 
 
-TRACK = _TrackWeights()
-
-
-@dataclass(frozen=True)
-class _MirrorWeights:
+@table
+class MIRROR:
     """Scanners with a mirror: places in short windows, first poses, and scanners distinguished by their scan lines."""
 
     knot_spacing: float = 0.1   # s between the knots of the splines: suspensions swing at 1 to 3 Hz
@@ -395,11 +367,8 @@ class _MirrorWeights:
     direction_tolerance: int = 4   # directions off its own that a step may lead
 
 
-MIRROR = _MirrorWeights()
-
-
-@dataclass(frozen=True)
-class _AdjustmentWeights:
+@table
+class RAYS:
     """The adjustment of poses to the rays of mirrors: what is known of vehicles, and when returns are understood."""
 
     acceleration: float = 3.0   # m/s^2, usual of a vehicle on the road
@@ -445,11 +414,8 @@ class _AdjustmentWeights:
     max_crossfall: float = 0.1   # slope: roads are no steeper across
 
 
-RAYS = _AdjustmentWeights()
-
-
-@dataclass(frozen=True)
-class _EstimateWeights:
+@table
+class ESTIMATE:
     """The estimated trajectory: what of it is written, and which clouds no vehicle on a road has measured."""
 
     row_spacing: float = 0.02   # s between the positions written: a third of a metre on a motorway
@@ -476,11 +442,8 @@ class _EstimateWeights:
     min_standing_time: float = 2.0   # s of measuring before standing still means anything
 
 
-ESTIMATE = _EstimateWeights()
-
-
-@dataclass(frozen=True)
-class _HeadWeights:
+@table
+class HEAD:
     """The track and the height of a many-beam head that turns about an upright axis."""
 
     turning_rates: tuple[float, float] = 4.0, 25.0   # turns per second that heads make
@@ -530,11 +493,8 @@ class _HeadWeights:
     heights: tuple[float, float] = 1.0, 4.5   # m above the road at which heads are mounted
 
 
-HEAD = _HeadWeights()
-
-
-@dataclass(frozen=True)
-class _VehicleWeights:
+@table
+class VEHICLE:
     """The vehicle, and what one move of its trajectory may leave."""
 
     lowest_sensor: float = 0.5   # m above the road; no scanner rides lower, but lines and places drawn on the road lie within
@@ -548,6 +508,3 @@ class _VehicleWeights:
     largest_lag: float = 0.5   # s by which a clock may lag: more is told of by itself
     moved_share: float = 0.9   # of the windows, in which no more may be left
     clearly_better: float = 0.5   # of what one move leaves, below which another is taken
-
-
-VEHICLE = _VehicleWeights()

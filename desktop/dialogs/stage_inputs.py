@@ -9,8 +9,7 @@ from qgis.core import QgsApplication, QgsMapLayer, QgsMapLayerModel, QgsProcessi
 from qgis.PyQt.QtCore import QIdentityProxyModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtWidgets import QComboBox, QWidget
 
-from ...processing_provider.results.origin import origin_of
-from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, road_map_of, road_maps, runs_of
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, origin_of, road_map_of, road_maps, runs_of
 
 TRAJECTORY = "TRAJECTORY"
 LAYER_INPUTS = ("source", "vector", "raster", "layer")
@@ -25,14 +24,10 @@ def layers_for(algorithm: QgsProcessingAlgorithm, road_map: RoadMap) -> dict[str
     inputs = [definition for definition in algorithm.parameterDefinitions() if definition.type() in LAYER_INPUTS and not definition.isDestination()]
     values = {definition.name(): road_map.layer(definition.name()).id() for definition in inputs if road_map.layer(definition.name()) is not None}
     driven = road_map.values.get(TRAJECTORY)
-    if values and algorithm.parameterDefinition(TRAJECTORY) is not None and isinstance(driven, str) and _is_there(driven):
+    if values and algorithm.parameterDefinition(TRAJECTORY) is not None and isinstance(driven, str) and (
+            QgsProject.instance().mapLayer(driven) is not None or Path(driven.split("|")[0]).is_file()):
         values[TRAJECTORY] = driven
     return values
-
-
-def _is_there(source):
-    """Whether a trajectory is a layer of the project, or a file that is still where it was."""
-    return QgsProject.instance().mapLayer(source) is not None or Path(source.split("|")[0]).is_file()
 
 
 def presets(algorithm: QgsProcessingAlgorithm, project: QgsProject, active: QgsMapLayer | None) -> dict[str, Any]:

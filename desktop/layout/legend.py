@@ -5,7 +5,6 @@ from __future__ import annotations
 from qgis.core import (
     Qgis,
     QgsExpressionContextUtils,
-    QgsLayerTreeLayer,
     QgsLayerTreeModelLegendNode,
     QgsLayoutItemLegend,
     QgsLayoutPoint,
@@ -118,7 +117,7 @@ def _size(layout, legend):
     return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
 
 
-def _leave_out_empty_classes(legend, node: QgsLayerTreeLayer, classes):
+def _leave_out_empty_classes(legend, node, classes):
     key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
     order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
     if order:

@@ -26,8 +26,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.texts import language
 from ...core.survey.las.reader import read_blocks, read_headers
-from ...processing_provider.results.origin import origin_of
-from ...processing_provider.results.road_maps import CLOUDS, road_map_of
+from ...processing_provider.results.road_maps import CLOUDS, origin_of, road_map_of
 from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .sheets import sheet_layout

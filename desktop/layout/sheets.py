@@ -124,8 +124,8 @@ class _Pages:
         self.lines: list[MapLine] = lines_of(layers, self.crs, project, self.unit)
         self.axes = axes_of(road_lines(self.lines))
         if not self.axes:
-            raise RoadExtractionError(tr("No line of the layers runs along a road for 5 m or more, so sheets have no direction. Give the driving "
-                                         "lines, road edges or marking lines of a road map."))
+            raise RoadExtractionError(tr("No line of the layers runs along a road for 5 m, so sheets have no direction. Give driving lines, road "
+                                         "edges or marking lines of a road map."))
         self.frame = frame_of(choice)
         self.scale, self.sheets = self._sheets()
         self.accuracy = accuracy_of(layers)

@@ -383,6 +383,9 @@ SIDE = 116       # px, of a cut-out
 GAP = 4          # px, between the two of a pair
 CROSS = 7        # px, half the cross in the middle
 GREEN, RED = "#33a02c", "#e6323c"
+# Why a pair is not accepted by default, in the user's language
+REASONS = {WEAK: tr("looks different"), REPEATS: tr("repeats nearby"), AWAY: tr("does not fit the others"),
+           AMBIGUOUS: tr("all of it fits elsewhere too")}
 
 
 class ImagePairs:
@@ -485,14 +488,8 @@ def pair_text(row) -> str:
     """Number, likeness and residual of a pair."""
     residual = row["residual"]
     distance = tr("{residual:.1f} cm off").format(residual=100.0 * residual) if residual not in (None, NULL) else "–"
-    why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{_words(row['why'])}"
+    why = "" if row["accepted"] or row["why"] in (None, NULL, "") else f"\n{REASONS.get(row['why'], row['why'])}"
     return tr("{number}: likeness {score:.2f}, {away}").format(number=row["point"], score=row["score"], away=distance) + why
-
-
-def _words(why):
-    """Why a pair is not accepted by default, in the user's language."""
-    return {WEAK: tr("looks different"), REPEATS: tr("repeats nearby"), AWAY: tr("does not fit the others"),
-            AMBIGUOUS: tr("all of it fits elsewhere too")}.get(why, why)
 
 
 def _side_by_side(*cuts):

@@ -8,7 +8,7 @@ from qgis.PyQt.QtCore import QRect, Qt
 from qgis.PyQt.QtGui import QColor, QImage, QKeyEvent, QPainter, QPaintEvent, QPen
 from qgis.PyQt.QtWidgets import QWidget
 
-from ...processing_provider.results.origin import output_of
+from ...processing_provider.results.road_maps import output_of
 from ..widgets import give_map_back, take_map
 
 INTENSITY = "INTENSITY_IMAGE"

@@ -182,7 +182,8 @@ class DoubtDock(QDockWidget):
                 self._come_to_front()
 
     def _come_to_front(self):
-        """Stand before the Results Viewer, which opens with the first report: below it the list has room for three lines."""
+        """Be shown, before the Results Viewer, which opens with the first report: below it the list has room for three lines."""
+        self.show()
         main, results = self.iface.mainWindow(), getattr(utils.plugins.get("processing"), "resultsDock", None)
         if results is not None and results.isVisible() and results not in main.tabifiedDockWidgets(self) \
                 and main.dockWidgetArea(results) == main.dockWidgetArea(self) and not self.isFloating() and not results.isFloating():
@@ -194,7 +195,6 @@ class DoubtDock(QDockWidget):
         self._take(road_map)
         self._fill()
         self.tabs.setCurrentWidget(self.steps)
-        self.show()
         self._come_to_front()
 
     def _take(self, road_map):
@@ -219,7 +219,6 @@ class DoubtDock(QDockWidget):
             return
         self._take(road_map)
         self.tabs.setCurrentIndex(0)
-        self.show()
         self._come_to_front()
         for _ in self.places:
             self.at = (self.at + step) % len(self.places) if self.at >= 0 else 0 if step > 0 else len(self.places) - 1

@@ -36,11 +36,6 @@ class Doubt:
     crs: QgsCoordinateReferenceSystem
 
     @property
-    def reasons(self) -> tuple[str, ...]:
-        """What is doubtful there, one line a piece."""
-        return tuple(piece.text for piece in self.pieces)
-
-    @property
     def doubt(self) -> float:
         """m that are likely to be wrong."""
         return sum(piece.doubt for piece in self.pieces)

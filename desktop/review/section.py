@@ -21,7 +21,7 @@ from qgis.core import (
 )
 
 from ...processing_provider.results.attributes import title_of as title_expression
-from ...processing_provider.results.origin import output_of
+from ...processing_provider.results.road_maps import output_of
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought

@@ -15,8 +15,8 @@ from ...core.road.scanlines.section_planes import slice_lines
 from ...core.survey.frame.placement import PlaceIndex
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import tr
+from ..background import with_points
 from ..widgets import button, column, give_map_back, row, take_map
-from .points_task import with_points
 from .section import HALF_WIDTH, Section, corners, crossings, middle_of, section_at
 from .section_view import SectionView
 
@@ -95,7 +95,12 @@ class SectionDock(QDockWidget):
     def _show(self, section: Section, road_map: RoadMap) -> None:
         self.section, self.road_map = section, road_map
         self.show()
-        self._draw_line()
+        if self.band is None:
+            self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
+            self.band.setColor(QColor("#ff00c8"))
+            self.band.setWidth(2)
+        self.band.setToGeometry(section.line(), road_map.vectors[0].crs())
+        self.band.show()
         self._stop_reading()  # what is under way belongs to the place before
         clouds = self._clouds(road_map)
         if not clouds:
@@ -155,16 +160,6 @@ class SectionDock(QDockWidget):
         middle = middle_of(lines)
         scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
         self.view.show_section(points, lines, message or tr("No points lie here."), scanline, corners(self.section, layers))
-
-    # -- the line on the map --------------------------------------------------------------------------
-
-    def _draw_line(self):
-        if self.band is None:
-            self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
-            self.band.setColor(QColor("#ff00c8"))
-            self.band.setWidth(2)
-        self.band.setToGeometry(self.section.line(), self.road_map.vectors[0].crs())
-        self.band.show()
 
     def _hide_line(self, visible):
         if self.band is not None:

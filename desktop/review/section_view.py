@@ -24,6 +24,7 @@ ZOOM = 1.25              # of a turn of the wheel
 NEAREST = 1.0            # m of width that zooming ends at
 PAPER, INK, LABEL = QColor("#ffffff"), QColor("#222222"), QColor(255, 255, 255, 215)
 CAPTION = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
+TRIANGLE = QPolygonF([QPointF(-5, 5), QPointF(5, 5), QPointF(0, -4)])   # of the top of a curb
 SCANLINE, CORNER = QColor("#e07b00"), QColor("#8e24aa")
 
 
@@ -172,7 +173,7 @@ class SectionView(QWidget):
             if math.isfinite(crossing.top):
                 top = QPointF(*self._at(crossing.offset, crossing.top))
                 painter.drawLine(QPointF(x, y), top)
-                painter.drawPolygon(QPolygonF([top + QPointF(-5, 5), top + QPointF(5, 5), top + QPointF(0, -4)]))
+                painter.drawPolygon(TRIANGLE.translated(top))
             if math.isfinite(crossing.z):
                 painter.drawEllipse(QPointF(x, y), 4, 4)
         for crossing, box in zip(shown, self._label_boxes(shown, frame, QFontMetricsF(painter.font(), self))):
@@ -198,7 +199,7 @@ class SectionView(QWidget):
         for offset, z, part in self.corners:
             centre = QPointF(*self._at(offset, z))
             if part == "top":
-                painter.drawPolygon(QPolygonF([centre + QPointF(-5, 5), centre + QPointF(5, 5), centre + QPointF(0, -4)]))
+                painter.drawPolygon(TRIANGLE.translated(centre))
             else:
                 painter.drawEllipse(centre, 4, 4)
 

@@ -20,10 +20,9 @@ from qgis.core import (
 )
 
 from ...core.corrections.pick import Seen, pick_line, snap_line
-from ...processing_provider.results.origin import output_of
-from ...processing_provider.results.road_maps import RoadMap, clouds_of
+from ...processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ...processing_provider.texts import tr
-from .points_task import with_points
+from ..background import with_points
 from .section import section_at
 
 AROUND = 30.0      # m about a click within which a line is followed

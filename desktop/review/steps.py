@@ -16,8 +16,7 @@ from ...algorithms.algorithm import SettingSpec
 from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
-from ...processing_provider.results.origin import origin_of
-from ...processing_provider.results.road_maps import CLOUDS, RoadMap
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap, origin_of
 from ...processing_provider.texts import tr
 from ..dialogs.database_dialog import PROVIDER, table_of_database
 from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again

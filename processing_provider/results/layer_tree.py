@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from qgis.core import QgsCoordinateTransform, QgsCsException, QgsLayerTree, QgsMapLayer, QgsProject, QgsRectangle, QgsSettings
 
-from .origin import OUTPUT, describe_origin, origin_of
-from .road_maps import LINES, road_map_of, runs_of
+from .road_maps import LINES, OUTPUT, describe_origin, origin_of, road_map_of, runs_of
 from .runs import Run
 
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")

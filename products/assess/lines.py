@@ -13,19 +13,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
 from ...core.curves.line_segments import SegmentIndex, single_lines
-from .matching import (
-    NAN,
-    Errors,
-    LinePoints,
-    Rates,
-    ReferenceStationing,
-    Stations,
-    TrajectoryStationing,
-    constant_runs,
-    cut_runs,
-    sample_lines,
-    share_of,
-)
+from .matching import Errors, LinePoints, Rates, ReferenceStationing, Stations, TrajectoryStationing, constant_runs, cut_runs, sample_lines, share_of
 
 # Lines against reference lines: completeness, correctness and deviations.
 #
@@ -165,7 +153,7 @@ def match_lines(result: Sequence[Any], reference: Sequence[Any], area: Any = Non
     back = _nearest_points(reference_points, result, max_angle, progress.part(0.5, 1.0))
     near = nearest.distance <= MAX_MATCH_DISTANCE
     return LineMatch(result, reference, result_owner, reference_owner, result_points, reference_points, nearest.distance, back.distance,
-                     np.where(near, nearest.side * nearest.distance, NAN), np.where(near, result_points.z - nearest.z, NAN),
+                     np.where(near, nearest.side * nearest.distance, np.nan), np.where(near, result_points.z - nearest.z, np.nan),
                      np.where(near, nearest.line, -1))
 
 
@@ -295,25 +283,19 @@ def assess_boundaries(result: Sequence[Any], reference: Sequence[Any], settings:
     result_points = result_points[judged]
     nearest = nearest[judged]
     reference_points, excluded_points = sample_lines(reference_lines).inside(area), sample_lines(excluded_lines).inside(area)
+    # excluded lines are stationed along the judged reference beside them
     stations = [along.of_result(result_points, nearest), along.of_reference(reference_points),
-                _of_excluded(along, excluded_points, reference_index)]
+                along.of_result(excluded_points, reference_index.nearest(excluded_points.xy))]
     progress.report(0.6)
     keys, intervals = _intervals(stations, settings.interval)
     groups = [_LineGroup(*group) for group in zip((result_lines, reference_lines, excluded_lines), (result_owner, reference_owner, excluded_owner),
                                                   (result_points, reference_points, excluded_points), stations, intervals)]
-    signed = np.where(np.isfinite(nearest.distance), along.outward(result_points, nearest, stations[0]) * nearest.distance, NAN)
+    signed = np.where(np.isfinite(nearest.distance), along.outward(result_points, nearest, stations[0]) * nearest.distance, np.nan)
     table = _judge(keys, groups, nearest, signed, settings, reasons)
     progress.report(0.9)
     beyond = float(result_points.length[groups[0].interval < 0].sum())
     by_side, total = _summary(table, groups[0], nearest, signed, settings)
     return BoundaryAccuracy(by_side, total, table, beyond, settings, along, groups[0], groups[1], groups[2], signed)
-
-
-def _of_excluded(along, points, segments):
-    """Stations of excluded lines, along the judged reference beside them."""
-    if isinstance(along, TrajectoryStationing):
-        return along.of_reference(points)
-    return along.of_result(points, segments.nearest(points.xy))
 
 
 def _intervals(placed, step):
@@ -356,7 +338,7 @@ def _judge(keys, groups, nearest, signed, settings, reasons):
     size = np.abs(signed[inside])
     largest = np.full(count, -np.inf)
     np.maximum.at(largest, rows, np.where(np.isfinite(size), size, -np.inf))
-    largest[~np.isfinite(largest)] = NAN
+    largest[~np.isfinite(largest)] = np.nan
     rise = (result_group.points.z - nearest.z)[inside]
     return _BoundaryIntervals(keys[:, 0], keys[:, 1], keys[:, 2] * step, reference, np.minimum(covered, step), why,
                              judged & enough, hit, false, _mean(rows, signed[inside], count), largest, _mean(rows, rise, count))
@@ -415,9 +397,7 @@ def interval_lines(accuracy: BoundaryAccuracy, tolerance: float) -> Iterator[tup
     """
     table, k = accuracy.intervals, accuracy.settings.tolerances.index(tolerance)
     outcome = np.where(table.excluded != "", "excluded", np.where(table.hit[:, k], "correct", np.where(table.judged, "missed", "")))
-    drawn = _by_interval(accuracy.reference_group)
-    excluded = _by_interval(accuracy.excluded_group)
-    result = _by_interval(accuracy.result_group)
+    drawn, excluded, result = map(_by_interval, (accuracy.reference_group, accuracy.excluded_group, accuracy.result_group))
     for row in range(len(table.unit)):
         shape = excluded.get(row, []) + drawn.get(row, []) if outcome[row] == "excluded" else drawn.get(row, [])
         if outcome[row] and shape:

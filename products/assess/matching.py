@@ -198,9 +198,6 @@ def stations_of_blocks(blocks: np.ndarray, frame: Any = None) -> tuple[np.ndarra
 # The driving-line thesis prints tp / (tp + fn) for precision and 2 tp / (fp + fn) + 1 for F1; its tables follow the usual formulas, which are used
 # here.
 
-NAN = float("nan")
-
-
 def f1_of(precision: float, recall: float) -> float:
     """Harmonic mean of precision and recall (both shares or both per cent); 0 where both are 0, NaN where one is unknown."""
     total = precision + recall
@@ -240,7 +237,7 @@ class Rates:
     def f1(self) -> float:
         """2 tp / (2 tp + fp + fn) where right = found, else the harmonic mean of precision and recall."""
         if not self.right + self.false + self._found + self.missed:
-            return NAN
+            return np.nan
         return f1_of(np.nan_to_num(self.precision), np.nan_to_num(self.recall))
 
     @property
@@ -268,7 +265,7 @@ class Errors:
         values = np.asarray(values, float)
         finite = np.isfinite(values)
         if not finite.any():
-            return cls(0, NAN, NAN, NAN, NAN)
+            return cls(0, np.nan, np.nan, np.nan, np.nan)
         values = values[finite]
         weights = np.ones(len(values)) if weights is None else np.asarray(weights, float)[finite]
         size = np.abs(values)
@@ -281,4 +278,4 @@ class Errors:
 
 def share_of(part: float, whole: float) -> float:
     """A share, NaN of nothing."""
-    return float(part / whole) if whole else NAN
+    return float(part / whole) if whole else np.nan

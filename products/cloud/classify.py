@@ -17,14 +17,13 @@ from ...core.common.parallel import check_cancelled
 from ...core.common.setting import Limited, setting
 from ...core.road.surface.ground_grid import MeasuredGround, windows_of
 from ...core.road.weights import SURFACE
-from ...core.survey.blocks import unwrap_week
 from ...core.survey.frame.projection import RoadProjection
 from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.las.point_fields import IntensitySource
 from ...core.survey.store.columns import Columns
 from ...core.survey.store.records import COORDINATE_SCALE
 from ...core.survey.survey import Survey
-from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK
+from ...core.survey.trajectory.time_systems import SECONDS_PER_WEEK, unwrap_week
 
 
 class PointClass(IntEnum):
@@ -177,7 +176,10 @@ class PointClassifier:
         within = self._surface.owner(x, y, low | deep) >= 0
         classes[within & low] = PointClass.ROAD_SURFACE
         classes[within & deep] = PointClass.LOW_NOISE
-        self._mark_curbs(classes, x, y, z, ~(np.abs(h) > 1.0))
+        rows, near, rise, _ = self._edges.of(x, y, z, ~(np.abs(h) > 1.0), chosen.curb)
+        height = self._edges.column("height_m")[near]
+        begins = np.maximum(chosen.curb_share * height, chosen.curb_rise)
+        classes[rows[(rise > begins) & (rise < height + chosen.slack)]] = PointClass.CURB
         marking = self._paint.owner(x, y, low & (classes != PointClass.CURB))
         painted = np.flatnonzero(marking >= 0)
         classes[painted[brightness[painted] >= self._paint_from[marking[painted]]]] = PointClass.PAINT
@@ -187,12 +189,6 @@ class PointClassifier:
         self._mark_things(classes, x, y, z, beside, self._lines, wide * chosen.beside)
         self._mark_things(classes, x, y, z, beside, self._objects, 0.5 * (np.nan_to_num(self._objects.column("diam_m")) + chosen.beside))
         return classes
-
-    def _mark_curbs(self, classes, x, y, z, which):
-        rows, near, rise, _ = self._edges.of(x, y, z, which, self.settings.curb)
-        height = self._edges.column("height_m")[near]
-        begins = np.maximum(self.settings.curb_share * height, self.settings.curb_rise)
-        classes[rows[(rise > begins) & (rise < height + self.settings.slack)]] = PointClass.CURB
 
     def _mark_things(self, classes, x, y, z, which, things, reach):
         """Mark points on lines or about shafts, `reach` metres (R,) from each; what grows is vegetation by its height above the ground."""

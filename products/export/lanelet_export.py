@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
-from html import escape
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from ...core.io.crs import as_in_file, horizontal_part, parse_crs
 from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
+from .xml_tree import xml_text
 
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -153,7 +154,7 @@ class _Drafting:
 
     def _lanelet(self, k: int, rows: slice) -> None:
         lanes = self.lanes
-        left, right = (_without_repeats(side[rows]) for side in (self.left, self.right))
+        left, right = (tuple(node for node, _ in groupby(side[rows].tolist())) for side in (self.left, self.right))
         if len(left) < 2 or len(right) < 2:   # where a lane tapers away, one border may stand still
             return
         tags = {"type": "lanelet", "subtype": SUBTYPE_OF_LANE[lanes.type[k]], "location": self.settings.location, "one_way": "yes"}
@@ -256,10 +257,6 @@ class _Drafting:
             lanelet.members.setdefault("regulatory_element", []).append(("relation", rule.id))
 
 
-def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
-    return tuple(int(node) for k, node in enumerate(nodes) if not k or node != nodes[k - 1])
-
-
 def _turn(middle: np.ndarray) -> str:
     """left, right or straight, as Autoware calls the ways through a junction."""
     first, last = middle[1] - middle[0], middle[-1] - middle[-2]
@@ -311,29 +308,14 @@ def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -
 
     `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
     """
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6" generator="Lanewright" upload="false">']
-    if local := local or degrees.local:
-        lines.append('  <MetaInfo format_version="1" map_version="1"/>')
     used = sorted(set().union(*(way.nodes for way in draft.ways)))
-    ids = {node: k for k, node in enumerate(used, start=1)}
+    id_of = {node: k for k, node in enumerate(used, start=1)}
     square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
+    nodes = []
     for node in used:
-        lon, lat = degrees.lonlat[node]
-        x, y, z = draft.nodes[node]
-        tags = {"ele": f"{z:.4f}"}
-        if local:
-            tags |= {"local_x": f"{x - square[0]:.4f}", "local_y": f"{y - square[1]:.4f}"}
-        lines.append(f'  <node id="{ids[node]}" visible="true" version="1" lat="{lat:.11f}" lon="{lon:.11f}">{_tags_as_xml(tags)}</node>')
+        tags = {"ele": f"{draft.nodes[node, 2]:.4f}"}
+        if local or degrees.local:
+            tags |= dict(zip(("local_x", "local_y"), map("{:.4f}".format, draft.nodes[node, :2] - square)))
+        nodes.append((id_of[node], *degrees.lonlat[node], tags))
     first = {"way": len(used) + 1, "relation": len(used) + 1 + len(draft.ways)}
-    for way in draft.ways:
-        places = "".join(map('<nd ref="{}"/>'.format, map(ids.__getitem__, way.nodes)))
-        lines.append(f'  <way id="{first["way"] + way.id}" visible="true" version="1">{places}{_tags_as_xml(way.tags)}</way>')
-    for relation in (*draft.lanelets, *draft.rules):
-        content = "".join(f'<member type="{kind}" ref="{first[kind] + number}" role="{role}"/>'
-                          for role, members in relation.members.items() for kind, number in members) + _tags_as_xml(relation.tags)
-        lines.append(f'  <relation id="{first["relation"] + relation.id}" visible="true" version="1">{content}</relation>')
-    return "\n".join([*lines, "</osm>", ""])
-
-
-def _tags_as_xml(tags):
-    return "".join(f'<tag k="{escape(key)}" v="{escape(str(value))}"/>' for key, value in tags.items())
+    return xml_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)

@@ -114,8 +114,9 @@ class LaneletNetwork:
         if len(left) < 2 or len(right) < 2:
             return
         turned_right = not same_way(self.places[left], self.places[right])
-        area = _signed_area(self.places[left], self.places[right[::-1] if turned_right else right])
-        turned = area > 0   # left then lies to the right: the lanelet is driven the other way
+        ring = self.places[np.concatenate([left, right if turned_right else right[::-1]]), :2]
+        x, y = (ring - ring[0]).T
+        turned = np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) > 0   # left then lies to the right: the lanelet is driven the other way
         self.left[lanelet.id] = left[::-1] if turned else left
         self.right[lanelet.id] = right[::-1] if turned_right != turned else right
         self.reversed_left[lanelet.id], self.reversed_right[lanelet.id] = turned, turned_right != turned
@@ -166,13 +167,6 @@ def same_way(first: np.ndarray, second: np.ndarray) -> bool:
     along = np.hypot(*(first[0, :2] - second[0, :2])) + np.hypot(*(first[-1, :2] - second[-1, :2]))
     against = np.hypot(*(first[0, :2] - second[-1, :2])) + np.hypot(*(first[-1, :2] - second[0, :2]))
     return bool(along <= against)
-
-
-def _signed_area(left: np.ndarray, right: np.ndarray) -> float:
-    """Square metres between two borders drawn the same way; negative where the first lies to the left."""
-    x, y = np.concatenate([left, right[::-1]])[:, :2].T
-    x, y = x - x[0], y - y[0]
-    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
 
 
 # Reading from the XML of OpenStreetMap.
@@ -244,11 +238,7 @@ def _id(element, name):
 
 def _tag_number(tags, name, element):
     """A tag's number, NaN where there is none."""
-    if name not in tags:
-        return np.nan
-    tag = XmlElement("tag", None, "", element.line)
-    tag.attributes[name] = tags[name]
-    return tag.number(name)
+    return XmlElement("tag", {name: tags[name]}, element.line).number(name) if name in tags else np.nan
 
 
 # The lanelets and lines of a Lanelet2 map as layers like ours.

@@ -219,8 +219,7 @@ class NearestValues:
     """
 
     def __init__(self, layer: Features | None, name: str) -> None:
-        rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
-                                                                  if g is not None and row.get(name) is not None]
+        rows = [(g, float(row[name])) for g, row in layer or () if g is not None and row.get(name) is not None]
         # of long lines the tree finds the nearest segment much sooner than the nearest line
         parts, values = [], []
         for geometry, value in rows:
@@ -352,15 +351,11 @@ def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.nda
 
 
 def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
-    if markings is None:
-        return []
-    return [geometry for geometry, row in markings if geometry is not None and not geometry.is_empty and row.get("class") in classes]
+    return [geometry for geometry, row in markings or () if geometry is not None and not geometry.is_empty and row.get("class") in classes]
 
 
 def _groups(shapes: list[Any]) -> list[list[Any]]:
     """Shapes that lie together."""
-    if not shapes:
-        return []
     joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
     groups: list[list[Any]] = [[] for _ in joined]
     tree = shapely.STRtree(joined)
@@ -392,9 +387,6 @@ def _long_side(shape):
 
 # What was read of a map from elsewhere, as layers like ours.
 
-STATUS_OF_MAPS = "measured"
-
-
 def add_marking_line(layer: Features, points: np.ndarray, road: int, kind: str, pattern: str, width: float = np.nan) -> None:
     """Add a painted border, (N, 3) map coordinates, to the layer MARKING_LINES."""
     _add_line(layer, points, road=road, line=len(layer) + 1, kind=kind, pattern=pattern, width_m=width)
@@ -407,7 +399,7 @@ def add_edge(layer: Features, points: np.ndarray, road: int, edge: str = "curb",
 
 def _add_line(layer, points, **values):
     length = plan_length(points)
-    layer.add(shapely.linestrings(points), status=STATUS_OF_MAPS, station_m=0.0, end_m=length, length_m=length, **values)
+    layer.add(shapely.linestrings(points), status="measured", station_m=0.0, end_m=length, length_m=length, **values)
 
 
 def plan_length(points: np.ndarray) -> float:

@@ -6,6 +6,7 @@ import codecs
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from html import escape
 from pathlib import Path
 from pyexpat import ExpatError, ParserCreate
@@ -31,27 +32,22 @@ BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32"
 class XmlElement:
     """One element of an XML file.
 
-    tag : name; attributes : dict of str; children : list of XmlElement; text : without blanks around it; line : in the file, 0 where made
+    tag : name; attributes : of str; children : list of XmlElement; text : without blanks around it; line : in the file
     """
 
     __slots__ = ("attributes", "children", "line", "tag", "text")
 
-    def __init__(self, tag: str, attributes: Mapping[str, Any] | None = None, text: str = "", line: int = 0) -> None:
-        self.tag, self.text, self.line = tag, text, line
-        self.attributes: dict[str, str] = {name: written(value) for name, value in attributes.items() if value is not None} if attributes else {}
+    def __init__(self, tag: str, attributes: Mapping[str, str] | None = None, line: int = 0) -> None:
+        self.tag, self.text, self.line = tag, "", line
+        self.attributes: Mapping[str, str] = attributes or {}
         self.children: Sequence[XmlElement] = ()   # most have none: a list is made for the first
 
-    def add(self, tag: str, text: str = "", /, **attributes: Any) -> XmlElement:
-        """A new child; attributes that are None are left out."""
-        return self.append(XmlElement(tag, attributes, text))
-
-    def append(self, child: XmlElement) -> XmlElement:
-        """Add a child, and return it."""
+    def append(self, child: XmlElement) -> None:
+        """Add a child."""
         if isinstance(self.children, list):
             self.children.append(child)
         else:
             self.children = [child]
-        return child
 
     def all(self, *path: str) -> Iterator[XmlElement]:
         """The children of a name; of several names, those of the last one in the first child of the others."""
@@ -98,24 +94,24 @@ def written(value: Any) -> str:
     return str(value)
 
 
-def xml_text(root: XmlElement) -> str:
-    """The whole file as text."""
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
-    _write(root, "", lines)
-    return "\n".join(lines) + "\n"
+def xml_text(template: str, **values: Any) -> str:
+    """The whole file as text, by a template and what it is filled with."""
+    return str(_templates().get_template(template).render(values))
 
 
-def _write(element, indent, lines):
-    head = f"{indent}<{element.tag}" + "".join(f' {name}="{escape(value)}"' for name, value in element.attributes.items())
-    if not element.children and not element.text:
-        lines.append(head + "/>")
-    elif not element.children:
-        lines.append(f"{head}>{escape(element.text, quote=False)}</{element.tag}>")
-    else:
-        lines.append(head + ">" + escape(element.text, quote=False))
-        for child in element.children:
-            _write(child, indent + "  ", lines)
-        lines.append(f"{indent}</{element.tag}>")
+@lru_cache(maxsize=1)
+def _templates():
+    """The jinja2.Environment of the files: what is put in is written as XML has it; `attributes` of an element are left out where they are None."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only when a file is written: QGIS starts no slower
+    from markupsafe import Markup
+
+    environment = Environment(loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=True, undefined=StrictUndefined,
+                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+                              finalize=lambda value: value if isinstance(value, Markup) else Markup(escape(written(value))))
+    environment.filters["text"] = lambda value: Markup(escape(value, quote=False))
+    environment.globals.update(zip=zip, attributes=lambda **values: Markup("".join(
+        f' {name}="{escape(written(value))}"' for name, value in values.items() if value is not None)))
+    return environment
 
 
 def read_xml(path: str, root_tag: str, kind: str, progress: Progress = Progress()) -> XmlElement:
@@ -211,9 +207,7 @@ class _Reading:
             self._refuse(f"has elements within elements, more than {MAX_DEPTH} deep")
         if self.count > MAX_ELEMENTS:
             self._refuse(f"has more than {MAX_ELEMENTS:,} elements")
-        element = XmlElement(tag, None, "", self.parser.CurrentLineNumber)
-        if attributes:
-            element.attributes = attributes
+        element = XmlElement(tag, attributes, self.parser.CurrentLineNumber)
         self.last_tag = self.parser.CurrentByteIndex
         if self.open:
             self.open[-1].append(element)

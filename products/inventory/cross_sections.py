@@ -20,17 +20,7 @@ from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.store.records import Points
 from ...core.survey.survey import Survey
 from .borders import BorderLayers, CrossSectionSettings, RoadBorders, Strip
-from .surface_grid import (
-    CROSS_CELL,
-    SLICE_LENGTH,
-    HeightErrors,
-    joined_heights,
-    noise_of_largest,
-    overlaps_of,
-    rut_depths,
-    solve_height_errors,
-    surface_grid,
-)
+from .surface_grid import CROSS_CELL, SLICE_LENGTH, HeightErrors, height_errors, joined_heights, largest_noise, overlaps_of, rut_depths, surface_grid
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
 READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
@@ -154,7 +144,7 @@ def _height_errors(survey: Survey, road: int, stations: list[float], borders: Ro
         return [] if result is None else overlaps_of(result[2], window)
 
     result = [overlap for window_overlaps in ordered_map(overlaps, range(len(stations)), progress) for overlap in window_overlaps]
-    return solve_height_errors(result, survey.frame.passes)
+    return height_errors(result, survey.frame.passes)
 
 
 def _section(survey, road, s, borders, errors, interval, stretch):
@@ -344,7 +334,7 @@ def _quiet_profiles(grid, heights, sigma, inside, along):
             noise = np.sqrt(np.where(finite, sigma[:count * slices].reshape(shape) ** 2, 0.0).sum(axis=1)) / counts
         noise = np.array([_median(row) for row in noise[:, inside]])
         limit = QUIET_PROFILE if slices < AVERAGED_SLICES[-1] and 2 * slices <= len(level) else MAX_RUT_CORRECTION
-        quiet = noise_of_largest(noise) < limit
+        quiet = largest_noise(noise) < limit
         if quiet.mean() >= 0.5:
             return profiles[quiet], noise[quiet]
     return np.empty((0, level.shape[1])), np.empty(0)
@@ -433,7 +423,6 @@ def _on_vehicles(s: np.ndarray, d: np.ndarray, h: np.ndarray) -> np.ndarray:
 # Cross-sections as a layer of lines, one for every lane and carriageway, and as a table.
 
 LINE_TOLERANCE = 0.003   # m of height to which the drawn profile is simplified
-MIN_SECTION_VERTICES = 2
 
 
 def sections_to_features(sections: RoadSections) -> tuple[Features, Features]:
@@ -493,7 +482,7 @@ def _line(section, part, frame):
     inside = finite & (section.d > part.strip.right) & (section.d < part.strip.left)
     d = np.r_[part.strip.right, section.d[inside], part.strip.left]
     z = np.interp(d, section.d[finite], section.z[finite])
-    if len(d) > MIN_SECTION_VERTICES:
+    if len(d) > 2:
         d, z = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.c_[d, z]), LINE_TOLERANCE)).T
     places = frame.to_map(section.road, np.full(len(d), section.station), d, z)
     return shapely.linestrings(np.stack(places, axis=1)[::-1])

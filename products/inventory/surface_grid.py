@@ -24,7 +24,7 @@ SPREAD_SAMPLE = 400       # cells whose scatter tells the noise of a pass and sc
 
 
 @dataclass(frozen=True)
-class SurfaceGrid:
+class _SurfaceGrid:
     """Heights of a stretch of road in I slices along it and J cells across it, of G groups (pass and scanner)."""
 
     road: int   # number
@@ -52,7 +52,7 @@ class SurfaceGrid:
         return self.base + self.slope * (np.asarray(s) - self.start)
 
 
-def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> SurfaceGrid:
+def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: tuple[float, float]) -> _SurfaceGrid:
     """Read a stretch of a road from a station (m) on, in so many slices of SLICE_LENGTH, between (right, left) offsets (m)."""
     end = start + slices * SLICE_LENGTH
     base, last = survey.road_height(road, np.array([start, end])).tolist()
@@ -93,7 +93,7 @@ def surface_grid(survey: Survey, road: int, start: float, slices: int, offsets: 
         deviations = deviation[(group_number == g) & rich]
         # mean absolute deviation of a normal distribution: sigma * sqrt(2 / pi), a median's own n costs one degree of freedom
         sigma[g] = np.sqrt(np.pi / 2) * float(np.minimum(deviations, ROAD_LAYER_JUMP).mean()) if len(deviations) else 0.0
-    return SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
+    return _SurfaceGrid(road, start, offsets[0], base, slope, groups, height, count, sigma)
 
 
 def _slope_within(cell, ahead, h):
@@ -164,7 +164,7 @@ class HeightErrors:
         return np.interp(s, self.windows, self.step[row]) + np.interp(s, self.windows, self.tilt[row]) * across
 
 
-def overlaps_of(grid: SurfaceGrid, window: int) -> list[Overlap]:
+def overlaps_of(grid: _SurfaceGrid, window: int) -> list[Overlap]:
     """Steps and differences in tilt between the groups of a grid."""
     overlaps = []
     station = float(grid.s.mean())
@@ -194,7 +194,7 @@ def _line(x, y):
     return float(level), float(slope)
 
 
-def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
+def height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
     """The errors that explain the overlaps of one road best: least squares with the priors above, robust against single windows.
 
     passes : all passes of the survey, by number
@@ -230,11 +230,15 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
     equation = np.repeat(np.arange(len(rows)), [len(row[0]) for row in rows])
     design = sparse.csr_matrix((np.concatenate([row[1] for row in rows]), (equation, np.concatenate([row[0] for row in rows]))), (len(rows), size))
     value, sigma = (np.array([row[k] for row in rows]) for k in (2, 3))
-    prior = _prior(G, W, len(scanners))
+    # what is known beforehand: errors are small, and change little from window to window
+    change = sparse.diags([-np.ones(W), np.ones(W)], [0, 1], shape=(max(W - 1, 0), W))
+    priors = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
+              for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
+    known = sparse.block_diag([*priors, sparse.identity(len(scanners)) / BORESIGHT_PRIOR**2])
     weight, x = np.ones(len(rows)), np.zeros(size)
     for _ in range(REWEIGHTINGS):
         precision = sparse.diags(weight / sigma**2)
-        x = spsolve((design.T @ precision @ design + prior).tocsc(), design.T @ (precision @ value))
+        x = spsolve((design.T @ precision @ design + known).tocsc(), design.T @ (precision @ value))
         weight = 1.0 / (1.0 + ((design @ x - value) / (STEP_OUTLIER / STEP_SIGMA * sigma)) ** 2)
     boresights = x[boresight + np.searchsorted(scanners, [scanner for _, scanner in groups])]
     tilt_of = x[tilts:boresight].reshape(G, W) + (direction * boresights)[:, None]
@@ -246,15 +250,7 @@ def solve_height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> Heig
                         len(opposite) >= OPPOSITE_WINDOWS, float(np.median(largest)))
 
 
-def _prior(G, W, S):
-    """The normal matrix of what is known beforehand."""
-    change = sparse.diags([-np.ones(W), np.ones(W)], [0, 1], shape=(max(W - 1, 0), W))
-    parts = [sparse.kron(sparse.identity(G), sparse.identity(W) / prior**2 + change.T @ change / drift**2)
-             for prior, drift in ((STEP_PRIOR, STEP_CHANGE), (TILT_PRIOR, TILT_CHANGE))]
-    return sparse.block_diag([*parts, sparse.identity(S) / BORESIGHT_PRIOR**2])
-
-
-def joined_heights(grid: SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
+def joined_heights(grid: _SurfaceGrid, errors: HeightErrors, frame: RoadFrame) -> tuple[np.ndarray, np.ndarray]:
     """(I, J) heights without the errors of their groups, m above the line of the grid, and their sigmas, m; NaN where nothing was seen."""
     weight = np.zeros(grid.height.shape[1:])
     total = np.zeros_like(weight)
@@ -320,7 +316,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
                 depths[half] = np.fmax(depths[half], np.where(finite[:, columns], depth[:, columns], -np.inf).max(axis=1) + np.where(
                     np.isfinite(depth).any(axis=1), 0.0, np.nan))
     depths[~np.isfinite(depths)] = np.nan
-    return np.maximum(depths - noise_of_largest(sigma), 0.0)
+    return np.maximum(depths - largest_noise(sigma), 0.0)
 
 
 def _breaks(profiles):
@@ -333,7 +329,7 @@ def _breaks(profiles):
     return breaks | (unseen[:, MAX_GAP_CELLS + 1:-1] - unseen[:, :-MAX_GAP_CELLS - 2] > MAX_GAP_CELLS)
 
 
-def noise_of_largest(sigma: np.ndarray) -> np.ndarray:
+def largest_noise(sigma: np.ndarray) -> np.ndarray:
     """(I,) m that noise of (I,) m in every cell adds to the largest distance below the edge."""
     independent = EDGE_LENGTH / (SMOOTHING_CELLS * CROSS_CELL)
     return np.asarray(sigma) / np.sqrt(SMOOTHING_CELLS) * np.sqrt(2.0 * np.log(independent))

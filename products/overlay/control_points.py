@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...core.common.errors import RoadExtractionError
-from ...core.io.crs import NO_PLACE, in_metres, place_of_raster
+from ...core.io.crs import NO_PLACE, in_metres, parse_crs, place_of_raster
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.io.text_table import as_number
 from ...core.lazy import gdal
@@ -27,18 +27,9 @@ MAX_DEPARTURE = 0.1  # of the image's size: what a tilted camera over hilly grou
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"  # roles of a point
 _FALSE_TEXTS = ("0", "false", "no", "off", "n", "f")
 _CHECK_TEXTS = ("check", "checkpoint", "check point", "chk", "cp", "test")
-COLUMN_ALIASES = {
-    "pixel": "pixel pixelx sourcex srcx column col sample samp px imagex imgx imx xpixel ximage ximg xsource colpx u".split(),
-    "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage yimg ysource rowpx v".split(),
-    "easting": "mapx easting east e geox worldx utme xmap xworld xgeo targetx xtarget rechtswert rw".split(),
-    "northing": "mapy northing north n geoy worldy utmn ymap yworld ygeo targety ytarget hochwert hw".split(),
-    "height": "mapz z h geoz zgeo worldz zworld height elevation elev altitude alt".split(),
-    "image": "image imagename imagefile imagefilename imageid imagelabel img filename file photo photoname camera cameralabel picture".split(),
-    "name": "name point id pointid pointname label gcp gcpname gcpid gcplabel marker markerlabel markername number no nr".split(),
-    "enable": "enable enabled active use used accepted".split(),
-    "role": "role type".split(),
-    "check": "check ischeck checkpoint".split(),
-}
+# what a column holds: its names, in plain small letters
+COLUMN_ALIASES = {meaning: names.split() for meaning, names in re.findall(
+    "(.+): (.+)", Path(__file__).with_name("column_names.txt").read_text(encoding="utf-8"))}
 REQUIRED_COLUMNS = ("pixel", "line", "easting", "northing")
 IMAGE_FILE = re.compile(r".\.(jpe?g|jp2|tiff?|png|dng|bmp|webp|img|vrt|raw|arw|cr2|nef)$", re.IGNORECASE)
 # Orders of numbers in tables without a header: QGIS, ENVI and ERDAS keep four, OpenDroneMap has the height between them
@@ -94,7 +85,8 @@ def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], i
     pixel, line = _in_the_image(table["pixel"][complete], table["line"][complete], roles != DISABLED, image, what)
     crs, units = in_metres(crs)
     easting, northing, height = units.in_metres(np.stack([table[key][complete] for key in ("easting", "northing", "height")], axis=1)).T
-    return ControlPoints(pixel, line, easting, northing, height, _names(usable, columns.get("name")), roles, crs, int((~complete).sum()))
+    names = tuple("name" in columns and _text(row, columns["name"]) or str(number) for number, row in enumerate(usable, 1))
+    return ControlPoints(pixel, line, easting, northing, height, names, roles, crs, int((~complete).sum()))
 
 
 def _plain(names):
@@ -226,12 +218,6 @@ def _in_the_image(pixel, line, used, image, what):
                               f"{image.height}. Do they belong to another image or to another size of it, or are pixel and line swapped?")
 
 
-def _names(rows, column):
-    if column is None:
-        return tuple(str(number) for number in range(1, len(rows) + 1))
-    return tuple(_text(row, column) or str(number) for number, row in enumerate(rows, 1))
-
-
 def _text(row, column):
     value = row[column] if column < len(row) else None
     if isinstance(value, float) and value.is_integer():
@@ -327,8 +313,6 @@ def _delimiter(lines):
 
 def _wkt(named, path):
     """WKT of the CRS that a file names, "" where it names none."""
-    from ...core.io.crs import parse_crs
-
     if not named:
         return ""
     # OpenDroneMap writes "WGS84 UTM 32N" for what EPSG calls "WGS 84 / UTM zone 32N"

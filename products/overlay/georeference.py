@@ -15,7 +15,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS, Features
 from ...core.common.progress import Progress
 from ...core.common.setting import check_limits, setting
-from ...core.io.crs import as_in_file
+from ...core.io.crs import as_in_file, check_metric, horizontal_part, parse_crs, same_crs
 from ...core.io.geotiff import GEOTIFF_TILE
 from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, unfinished_path
 from ...core.lazy import gdal, pyproj
@@ -88,15 +88,12 @@ def _rmse(vectors):
     return float(np.sqrt(np.mean(np.sum(vectors**2, axis=1)))) if len(vectors) else float("nan")
 
 
-def georeference(image: SourceImage, points: ControlPoints, settings: GeoreferenceSettings | None = None) -> Georeferencing:
+def georeference(image: SourceImage, points: ControlPoints, settings: GeoreferenceSettings = GeoreferenceSettings()) -> Georeferencing:
     """Fit a polynomial to control points, in a projected CRS in metres or in local metres, and assess it.
 
     Raises RoadExtractionError if there are fewer than 1, 3, 6, 10 control points for order 0, 1, 2, 3; if they lie on a line or do not determine the
     polynomial; if the polynomial mirrors or folds the image; if the CRS is not in metres; or if the image of a shift has no position.
     """
-    from ...core.io.crs import check_metric, parse_crs
-
-    settings = settings or GeoreferenceSettings()
     if settings.check_disabled:
         points = points.with_disabled_as_checks()
     if points.crs:
@@ -119,7 +116,7 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
     errors = np.column_stack([points.easting - easting, points.northing - northing])
     left_out = errors.copy()
     left_out[used] = fit.left_out
-    size = settings.pixel_size or _two_digits(_own_pixel_size(fit, hull or frame))
+    size = settings.pixel_size or float(f"{_own_pixel_size(fit, hull or frame):.2g}")
     result = Georeferencing(image, points, settings, fit, size, hull, outside, cut, errors, left_out)
     result.notes.extend(_notes(result))
     return result
@@ -127,8 +124,6 @@ def georeference(image: SourceImage, points: ControlPoints, settings: Georeferen
 
 def residual_vectors(result: Georeferencing) -> Features:
     """Features RESIDUALS of the control and check points: LineStringZ from the place of each by the polynomial to its measured place."""
-    from shapely import LineString
-
     points, errors = result.points, result.errors
     leverage = np.full(len(points), np.nan)
     leverage[points.having(CONTROL)] = result.fit.leverage
@@ -137,7 +132,7 @@ def residual_vectors(result: Georeferencing) -> Features:
     for k in range(len(points)):
         end = np.array([points.easting[k], points.northing[k]])
         start = end - errors[k]
-        layer.add(LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=points.roles[k],
+        layer.add(shapely.LineString([(*start, heights[k]), (*end, heights[k])]), point=points.names[k], role=points.roles[k],
                   pixel=points.pixel[k], line=points.line[k], dx_m=errors[k, 0], dy_m=errors[k, 1], resid_m=np.hypot(*errors[k]),
                   loo_m=np.hypot(*result.left_out[k]), leverage=leverage[k])
     return layer
@@ -156,8 +151,6 @@ def _enough(count, rows, order):
 
 def _rough_position(image, points, settings):
     """Geotransform of the approximate position of the image before a shift."""
-    from ...core.io.crs import horizontal_part, parse_crs, same_crs
-
     if image.geotransform is not None:
         image_crs, points_crs = parse_crs(image.crs), parse_crs(points.crs)
         if image_crs is not None and points_crs is not None and not same_crs(image_crs, points_crs):
@@ -174,7 +167,7 @@ def _rough_position(image, points, settings):
 def _well_spread(pixel, line, easting, northing, order):
     """Refuse control points on a line, in the image or on the map, and those that do not determine a higher order."""
     for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
-        along, across = principal_extents(places)
+        along, across = _principal_extents(places)
         if across <= COLLINEAR_RATIO * along:
             raise RoadExtractionError(f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
                                       f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
@@ -214,11 +207,6 @@ def _own_pixel_size(fit: _ControlPointFit, area: shapely.Geometry) -> float:
     return float(np.sqrt(np.median(np.abs(np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))))))
 
 
-def _two_digits(size):
-    """A number rounded to two digits."""
-    return round(size, 1 - int(np.floor(np.log10(size))))
-
-
 def _notes(result: Georeferencing) -> Iterator[str]:
     """Warnings for the user, one sentence each."""
     fit, points, order = result.fit, result.points, result.settings.order
@@ -236,7 +224,9 @@ def _notes(result: Georeferencing) -> Iterator[str]:
         yield (f"{len(used)} control points are few for order {order} ({MIN_CONTROL_POINTS[order]} at least): the residuals are smaller than "
                "the errors. Use the leave-one-out error instead.")
     if order and result.outside > _NOTED_OUTSIDE_SHARE:
-        times = float(np.sqrt(_ring_leverage(result).max()))
+        ring = shapely.line_interpolate_point(shapely.box(0, 0, result.image.width, result.image.height).exterior,
+                                              np.linspace(0, 1, _OUTLINE_PLACES), normalized=True)
+        times = float(np.sqrt(fit.leverage_at(*shapely.get_coordinates(ring).T).max()))
         share = f"{100 * result.outside:.0f} % of the image lies outside the hull of the control points"
         if result.cut:
             yield f"{share} and is left out, because a polynomial of order {order} is not reliable there."
@@ -250,33 +240,18 @@ def _notes(result: Georeferencing) -> Iterator[str]:
 
 def _map_metres(points):
     """A warning where a metre on the map is not a metre on the ground, as in web maps."""
-    from ...core.io.crs import horizontal_part, parse_crs
-
     crs = horizontal_part(parse_crs(points.crs))
     if crs is None or not crs.is_projected:
         return
-    scale = _scale_of_map(crs, points)
-    if np.isfinite(scale) and abs(scale - 1.0) > _MAX_SCALE_ERROR:
-        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
-               "For measuring, use control points in the CRS of the survey.")
-
-
-def _scale_of_map(crs, points):
-    """Metres on the map per metre on the ground at the middle of the points; NaN where the CRS is a local one."""
     try:
         projection = pyproj.Proj(crs)
         longitude, latitude = projection(float(points.easting.mean()), float(points.northing.mean()), inverse=True)
-        return float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))
-    except (pyproj.exceptions.CRSError, pyproj.exceptions.ProjError):
-        return float("nan")
-
-
-def _ring_leverage(result):
-    """Leverage along the border of the image."""
-    frame = shapely.box(0, 0, result.image.width, result.image.height)
-    places = shapely.get_coordinates(shapely.line_interpolate_point(
-        frame.exterior, np.linspace(0, 1, _OUTLINE_PLACES), normalized=True))
-    return result.fit.leverage_at(places[:, 0], places[:, 1])
+        scale = float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))   # metres on the map per metre on the ground
+    except (pyproj.exceptions.CRSError, pyproj.exceptions.ProjError):   # a local CRS
+        return
+    if np.isfinite(scale) and abs(scale - 1.0) > _MAX_SCALE_ERROR:
+        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
+               "For measuring, use control points in the CRS of the survey.")
 
 
 def _burden(fit):
@@ -380,11 +355,17 @@ class _ControlPointFit:
         return np.sum(np.linalg.solve(self.triangle.T, terms.T) ** 2, axis=0)
 
 
-def principal_extents(places: np.ndarray) -> tuple[float, float]:
+def _principal_extents(places: np.ndarray) -> tuple[float, float]:
     """Extents of (N, 2) places along their principal axes, the longer one first."""
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
     return float(along), float(across)
+
+
+def lie_on_a_line(places: np.ndarray) -> bool:
+    """Whether (N, 2) places lie on a line, nearly."""
+    along, across = _principal_extents(places)
+    return across <= COLLINEAR_RATIO * along
 
 
 def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:
@@ -477,14 +458,13 @@ def _keeps_its_pixels(result):
 
 
 @gdal_exceptions()
-def draw_image(result: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
+def draw_image(result: Georeferencing, path: str | Path, progress: Progress = Progress()) -> float:
     """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
     Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value, unless the image has its own.
     Returns pixels, the greatest distance between the places where GDAL and the polynomial put a pixel.
     Raises RoadExtractionError if the result would be too large, the image cannot be read, or the file cannot be written.
     """
-    progress = progress or Progress()
     bounds, width, height = output_grid(result)
     unfinished, tiled = (unfinished_path(path, suffix) for suffix in (".tif", ".source.tif"))
     source = view = None
@@ -499,7 +479,8 @@ def draw_image(result: Georeferencing, path: str | Path, progress: Progress | No
         gdal_work(partial(_write, view, unfinished, result.image), progress.part(0.1, 0.8))
         # closed and opened again: GDAL 3.6 may deadlock where it reads what its own threads still write
         if levels := [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]:
-            gdal_work(partial(_add_overviews, unfinished, levels), progress.part(0.8, 1.0))
+            gdal_work(lambda report: gdal.Open(str(unfinished), gdal.GA_Update).BuildOverviews("AVERAGE", levels, callback=report),
+                      progress.part(0.8, 1.0))
         os.replace(unfinished, path)
         Path(f"{path}.aux.xml").unlink(missing_ok=True)
     except RuntimeError as problem:
@@ -592,7 +573,3 @@ def _write(view, path, image, report):
     options = ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER",
                "NUM_THREADS=ALL_CPUS", f"PREDICTOR={3 if image.kind == 'real' else 2}"]
     gdal.GetDriverByName("GTiff").CreateCopy(str(path), view, options=options, callback=report)
-
-
-def _add_overviews(path, levels, report):
-    gdal.Open(str(path), gdal.GA_Update).BuildOverviews("AVERAGE", levels, callback=report)

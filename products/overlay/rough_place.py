@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...core.common.errors import RoadExtractionError
+from ...core.io.crs import horizontal_part, parse_crs, same_crs
 from ...core.io.geotiff import IntensityImage
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2, gdal, pyproj
@@ -121,8 +122,6 @@ def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.n
 
     They are infinite where a place has none in the target CRS.
     """
-    from ...core.io.crs import horizontal_part, parse_crs, same_crs
-
     a, b = parse_crs(source), parse_crs(target)
     if a is None or b is None or same_crs(a, b):
         return x, y
@@ -159,7 +158,6 @@ class _PositionTags:
 @gdal_exceptions()
 def read_position_tags(image: SourceImage) -> _PositionTags | None:
     """The _PositionTags of an image; None where it has no latitude and longitude."""
-
     dataset = open_raster(image.path)
     packets = dataset.GetMetadata("xml:XMP")
     exif = {**(dataset.GetMetadata("EXIF") or {}), **(dataset.GetMetadata() or {})}

@@ -80,13 +80,10 @@ def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str,
     """
     outcomes = ("correct", "missed", "false")
     areas = {name: accuracy.blocks[:, 2 + k] * accuracy.settings.cell_size**2 for k, name in enumerate(outcomes)}
-    return html_page("marking_accuracy", accuracy=accuracy, names=names, notes=notes, share=_share,
+    return html_page("marking_accuracy", accuracy=accuracy, names=names, notes=notes,
+                  share=lambda part, whole: 100.0 * part / whole if whole else None,
                   map=_outcome_map(layer, grey_background(image) if image else None, filled=True),
                   outcome_chart=_outcomes_along_road(dict.fromkeys(outcomes, station), areas, told(along), "m²"))
-
-
-def _share(part, whole):
-    return 100.0 * part / whole if whole else None
 
 
 def _outcome_map(layer, background=None, filled=False):

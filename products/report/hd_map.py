@@ -28,12 +28,12 @@ def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]
     """
     types = set() if shown is None else set(shown.lanes.type)
     return html_page("map_export", title=title, subtitle=subtitle, notes=notes, rows=list(facts), tables=tables,
-                  drawn=_lanes_and_lines(shown) if shown is not None and types else "",
+                  drawn=_lanes_and_lines(shown) if shown is not None and types else None,
                   colours=[(COLOUR_OF_LANE[kind], word(kind)) for kind in COLOUR_OF_LANE if kind in types])
 
 
-def _lanes_and_lines(shown: RoadMapSource) -> str:
-    """An SVG of lanes and lines."""
+def _lanes_and_lines(shown: RoadMapSource) -> dict[str, Any]:
+    """What an SVG of lanes and lines is made of: its size, (points, colour) of the lanes, (points, colour, dashed or not) of the lines."""
     lanes = shown.lanes
     vertices = np.concatenate([lanes.left, lanes.right])[:, :2]
     low, high = vertices.min(0), vertices.max(0)
@@ -44,17 +44,11 @@ def _lanes_and_lines(shown: RoadMapSource) -> str:
         placed = (points[:, :2] - low) * scale + 10
         return " ".join(f"{x:.1f},{size[1] - y:.1f}" for x, y in placed)
 
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]:.0f} {size[1]:.0f}" width="{size[0]:.0f}" height="{size[1]:.0f}">']
-    for k in range(len(lanes)):
-        left, right = lanes.borders(k)
-        colour = COLOUR_OF_LANE.get(lanes.type[k], "#d5d9dc")
-        parts.append(f'<polygon points="{path(np.concatenate([left, right[::-1]]))}" fill="{colour}" fill-opacity="0.8" stroke="#ffffff" '
-                     'stroke-width="0.4"/>')
-    for layer, colour in ((shown.road_edges, "#5a4632"), (shown.marking_lines, "#1f2a33")):
-        for shape, row in layer or ():
-            dash = ' stroke-dasharray="4 4"' if "dashed" in str(row.get("pattern")) else ""
-            parts.append(f'<polyline points="{path(shapely.get_coordinates(shape))}" fill="none" stroke="{colour}" stroke-width="0.8"{dash}/>')
-    return "".join(parts) + "</svg>"
+    areas = [(path(np.concatenate([left, right[::-1]])), COLOUR_OF_LANE.get(kind, "#d5d9dc"))
+             for kind, (left, right) in zip(lanes.type, map(lanes.borders, range(len(lanes))))]
+    lines = [(path(shapely.get_coordinates(shape)), colour, "dashed" in str(row.get("pattern")))
+             for layer, colour in ((shown.road_edges, "#5a4632"), (shown.marking_lines, "#1f2a33")) for shape, row in layer or ()]
+    return dict(width=f"{size[0]:.0f}", height=f"{size[1]:.0f}", areas=areas, lines=lines)
 
 
 def map_check_report(findings: Findings, path: str, notes: Sequence[str] = ()) -> str:

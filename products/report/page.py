@@ -104,7 +104,6 @@ def _base64_png(image: np.ndarray) -> str:
 CHART_WIDTH = 900  # px
 LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 58, 22, 12, 40  # px
 PLOT_END = CHART_WIDTH - RIGHT_MARGIN
-GRID_COLOUR, TEXT_COLOUR = "#dddddd", "#444444"
 MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
 
 
@@ -118,10 +117,6 @@ class Chart:
         self.parts: list[str] = []
         self.levels: list[float] = []
         self.labels = x_label, y_label
-
-    @property
-    def _clip(self) -> str:
-        return f"plot{self.height}"
 
     def _x(self, x):
         return LEFT_MARGIN + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN)
@@ -152,7 +147,7 @@ class Chart:
             if len(run):
                 points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
                 self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
-                                  f'clip-path="url(#{self._clip})">{_title(title)}</polyline>')
+                                  f'clip-path="url(#plot{self.height})">{_title(title)}</polyline>')
 
     def level(self, y: float, colour: str, label: str = "") -> None:
         """Draw a dashed line across the plot, with its label unless that would lie over another one."""
@@ -165,29 +160,10 @@ class Chart:
 
     def svg(self) -> str:
         """The chart as an SVG element."""
-        # charts of one page may share the name of the clip path: it is the same rectangle for all of one height
-        clip = (f'<clipPath id="{self._clip}"><rect x="{LEFT_MARGIN}" y="0" width="{PLOT_END - LEFT_MARGIN}" '
-                f'height="{self.height}"/></clipPath>')
-        inner = "".join([clip, self._grid(), *self.parts])
-        return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{CHART_WIDTH}" height="{self.height}" viewBox="0 0 {CHART_WIDTH} {self.height}" '
-                f'font-family="DejaVu Sans, Segoe UI, Helvetica, Arial, sans-serif" font-size="12">'
-                f'<rect width="{CHART_WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')
-
-    def _grid(self):
-        parts, foot = [], self.height - BOTTOM_MARGIN
-        for x in ticks(self.x0, self.x1, 10):
-            pixel = float(self._x(x))
-            parts.append(f'<line x1="{pixel:.1f}" x2="{pixel:.1f}" y1="{TOP_MARGIN}" y2="{foot}" stroke="{GRID_COLOUR}"/>'
-                         f'<text x="{pixel:.1f}" y="{foot + 15}" text-anchor="middle" fill="{TEXT_COLOUR}">{_number(x)}</text>')
-        for y in ticks(self.y0, self.y1, 5):
-            pixel = float(self._y(y))
-            parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{GRID_COLOUR}"/>'
-                         f'<text x="{LEFT_MARGIN - 6}" y="{pixel + 4:.1f}" text-anchor="end" fill="{TEXT_COLOUR}">{_number(y)}</text>')
-        middle = TOP_MARGIN + (foot - TOP_MARGIN) / 2
-        style = f'text-anchor="middle" fill="{TEXT_COLOUR}"'
-        parts.append(f'<text x="{(LEFT_MARGIN + PLOT_END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
-        parts.append(f'<text x="14" y="{middle}" {style} transform="rotate(-90 14 {middle})">{html.escape(self.labels[1])}</text>')
-        return "".join(parts)
+        columns, rows = ([(float(pixel_of(value)), f"{value:.10g}" if abs(value) > 1e-12 else "0") for value in ticks(low, high, count)]
+                         for pixel_of, low, high, count in ((self._x, self.x0, self.x1, 10), (self._y, self.y0, self.y1, 5)))
+        return html_page("chart", chart=self, columns=columns, rows=rows, width=CHART_WIDTH, left=LEFT_MARGIN, right=PLOT_END, top=TOP_MARGIN,
+                         foot=self.height - BOTTOM_MARGIN)
 
 
 def ticks(low: float, high: float, count: int) -> np.ndarray:
@@ -199,10 +175,6 @@ def ticks(low: float, high: float, count: int) -> np.ndarray:
 def _nonzero_range(pair):
     low, high = float(pair[0]), float(pair[1])
     return (low, high) if high > low else (low - 0.5, low + 0.5)
-
-
-def _number(value):
-    return f"{value:.10g}" if abs(value) > 1e-12 else "0"
 
 
 def _title(text):

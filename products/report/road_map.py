@@ -12,6 +12,7 @@ from ...core.common.texts import tr, word
 from ...core.countries.catalogue import country
 from .page import Chart, draw_map, grey_background, html_page
 
+DRAWN = "boundary_differences", "markings", "edges", "marking_lines", "driving_lines"   # layers of the overview
 MAX_DIAGRAMS = 16         # of curvature; further driving lines are not drawn
 CURVATURE_STEP = 1.0      # m between the values of a curvature diagram
 CURVATURE_BASE = 5.0      # m to either side over which the change of heading is measured
@@ -24,7 +25,9 @@ def road_map_report(road_map: Any, image_path: str | None = None) -> str:
     edges, surface, corrections = road_map.edges, road_map.surface, road_map.corrections
     lost = {one.row for one in corrections.unmatched}
     values = dict(
-        map=road_map, notes=[note for note in (road_map.without_paint, surface.thin) if note], overview=_overview(road_map, image_path),
+        map=road_map, notes=[note for note in (road_map.without_paint, surface.thin) if note],
+        overview=draw_map({name.removeprefix("boundary_"): road_map.layer(name) for name in DRAWN},
+                          grey_background(image_path) if image_path and road_map.markings is not None else None),
         edges=_totals_with_sigma(edges.length, edges.sigma, edges.what, edges.kind, edges.side, edges.status),
         areas=[(word(status), area) for status, area in _totals(surface.area, surface.status)], lost=lost,
         corrections=sorted(corrections.rows, key=lambda one: (one.row not in lost, one.row)))
@@ -34,12 +37,6 @@ def road_map_report(road_map: Any, image_path: str | None = None) -> str:
         values |= dict(markings=_markings(road_map.markings), marking_lines=_lengths(road_map.marking_lines, "kind", "pattern", "status"))
         values |= _driving(road_map)
     return html_page("road_map", **values)
-
-
-def _overview(road_map, image_path):
-    background = grey_background(image_path) if image_path and road_map.markings is not None else None
-    names = ("boundary_differences", "markings", "edges", "marking_lines", "driving_lines")
-    return draw_map({name.removeprefix("boundary_"): road_map.layer(name) for name in names}, background)
 
 
 def _lengths(features, *names):
@@ -76,12 +73,9 @@ def _agreement(edges, differences):
 
 def _markings(markings):
     """(class, use, number, area) of markings."""
-    area, count = defaultdict(float), defaultdict(int)
-    for geometry, row in markings:
-        key = (row.get("class") or "–", row.get("use") or "–")
-        area[key] += geometry.area
-        count[key] += 1
-    return [(word(key[0], "class"), word(key[1], "use"), count[key], area[key]) for key in sorted(area)]
+    columns = markings.column("class"), markings.column("use")
+    return [(word(kind, "class"), word(use, "use"), int(count), area) for (kind, use, area), (*_, count) in zip(
+        _totals(shapely.area(markings.geometries), *columns), _totals(np.ones(len(markings)), *columns))]
 
 
 def _driving(road_map):

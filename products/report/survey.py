@@ -30,7 +30,10 @@ def inspection_report(inspection: Inspection) -> str:
     if inspection.drive is not None:
         heights = inspection.drive.profile[:, 1:]
         low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
-        profile = dict(chart=_profile_chart(inspection.drive.profile, low, high), low=low, high=high)
+        chart = Chart((0.0, float(inspection.drive.profile[-1, 0])), (low, high), "m", "m")
+        for row, colour in ((2, ROAD_COLOUR), (1, TRACK_COLOUR)):
+            chart.curve(inspection.drive.profile[:, 0], inspection.drive.profile[:, row], colour, width=2.0)
+        profile = dict(chart=chart.svg(), low=low, high=high)
     values = np.flatnonzero(inspection.intensity)
     quantiles = [int(np.searchsorted(np.cumsum(inspection.intensity) / inspection.count, q)) for q in (0.01, 0.5, 0.99)]
     histogram = _histogram(inspection.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else ""
@@ -58,14 +61,6 @@ def _density_picture(inspection: Inspection) -> dict[str, Any]:
         track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / inspection.settings.cell_size * scale
         cv2.polylines(image, [np.rint(track).astype(np.int32)], False, (60, 60, 255), 2, cv2.LINE_AA)
     return dict(image=image, most=top, with_track=with_track)
-
-
-def _profile_chart(profile, low, high):
-    """SVG of the heights along the drive: (N, 3) distance driven, height of the trajectory and of the road under it, m, NaN where unknown."""
-    chart = Chart((0.0, float(profile[-1, 0])), (low, high), "m", "m")
-    for row, colour in ((2, ROAD_COLOUR), (1, TRACK_COLOUR)):
-        chart.curve(profile[:, 0], profile[:, row], colour, width=2.0)
-    return chart.svg()
 
 
 def _histogram(counts, low, high):

@@ -16,17 +16,7 @@ from ...core.survey.frame.placement import FrameLines
 from ...core.survey.frame.road_frame import RoadFrame
 from ...core.survey.survey import Survey
 from ..inventory.borders import RoadBorders
-from ..inventory.surface_grid import (
-    CROSS_CELL,
-    ROAD_LAYER_JUMP,
-    ROAD_REACH,
-    SLICE_LENGTH,
-    HeightErrors,
-    joined_heights,
-    overlaps_of,
-    solve_height_errors,
-    surface_grid,
-)
+from ..inventory.surface_grid import CROSS_CELL, ROAD_LAYER_JUMP, SLICE_LENGTH, HeightErrors, height_errors, joined_heights, overlaps_of, surface_grid
 
 READ_SLICES = 20        # cost: slices of ground that are read at once
 STANDING_WIDTH = 4.0    # m across: what rises from the ground and is narrower stands on it: vehicles, bins, trunks
@@ -100,7 +90,7 @@ def road_ground(survey: Survey, road: int, borders: RoadBorders, reach: float, p
         return replace(grid, height=grid.height.astype(np.float32), count=grid.count.astype(np.uint16)), overlaps_of(grid, int(start))
 
     read_grids = list(ordered_map(read, np.arange(first, last + 1, READ_SLICES) * SLICE_LENGTH, progress))
-    errors = solve_height_errors([overlap for _, overlaps in read_grids for overlap in overlaps], survey.frame.passes)
+    errors = height_errors([overlap for _, overlaps in read_grids for overlap in overlaps], survey.frame.passes)
     z, sigma = [], []
     for grid, _ in read_grids:
         heights, accuracy = joined_heights(grid, errors, survey.frame)
@@ -134,21 +124,6 @@ def medians(values: np.ndarray) -> np.ndarray:
     """(...) lower medians along the last axis of (..., N) values, without NaN; NaN where all are."""
     middle = np.maximum((np.isfinite(values).sum(axis=-1) - 1) // 2, 0)
     return np.take_along_axis(np.sort(values, axis=-1), middle[..., None], axis=-1)[..., 0]   # NaN last
-
-
-def part_roads(grounds: list[RoadGround], survey: Survey) -> None:
-    """Take from each ground the cells that lie nearer to another road of about their height, where that road's ground was seen."""
-    seen, nearer = [np.isfinite(ground.z).astype(float) for ground in grounds], []
-    for ground in grounds:
-        i, j = np.nonzero(np.isfinite(ground.z))
-        nearest, s, d = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
-        for other, known in zip(grounds, seen):
-            rows = np.flatnonzero((nearest == other.road) & (other.road != ground.road))
-            rows = rows[other.at(s[rows], d[rows], known) > 0.0]
-            rows = rows[np.abs(survey.road_height(other.road, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
-            nearer.append((ground, i[rows], j[rows]))
-    for ground, i, j in nearer:
-        ground.z[i, j] = np.nan
 
 
 def edge_profiles(survey: Survey, ground: RoadGround, lines: FrameLines,

@@ -21,7 +21,7 @@ from ...core.survey.survey import Survey
 from ..inventory.borders import BorderLayers, RoadBorders
 from ..inventory.surface_grid import CROSS_CELL, ROAD_REACH, SLICE_LENGTH
 from .breaklines import KINDS, Breakline, lines_to_follow, road_breaklines
-from .ground import READ_SLICES, part_roads, road_ground
+from .ground import READ_SLICES, road_ground
 from .triangulation import Triangulation, thinned
 
 APART = 0.10            # m by which two breaklines that the triangulation follows are apart at least; an edge's foot and top are nearer
@@ -79,7 +79,7 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
             grounds.append(ground)
         else:
             without.append(str(road))
-    part_roads(grounds, survey)
+    _part_roads(grounds, survey)
     outlines = {ground.road: ground.outline(survey.frame, settings.max_gap) for ground in grounds}
     covered, crossed = _covered(grounds, outlines, survey)
     for k, ground in enumerate(grounds):
@@ -108,6 +108,21 @@ def make_surface_model(survey: Survey, layers: BorderLayers, settings: SurfaceSe
         model.notes.append(f"The surface misses the ground by {1000 * rmse:.1f} mm (root mean square), more than the tolerance of "
                            f"{1000 * settings.tolerance:g} mm: the ground is rougher than that. A greater tolerance gives fewer triangles.")
     return model
+
+
+def _part_roads(grounds, survey):
+    """Take from each ground the cells that lie nearer to another road of about their height, where that road's ground was seen."""
+    seen, nearer = [np.isfinite(ground.z).astype(float) for ground in grounds], []
+    for ground in grounds:
+        i, j = np.nonzero(np.isfinite(ground.z))
+        nearest, s, d = survey.frame.locate_nearest(*survey.frame.road(ground.road).to_map(ground.s[i], ground.d[j]))
+        for other, known in zip(grounds, seen):
+            rows = np.flatnonzero((nearest == other.road) & (other.road != ground.road))
+            rows = rows[other.at(s[rows], d[rows], known) > 0.0]
+            rows = rows[np.abs(survey.road_height(other.road, s[rows]) - ground.z[i[rows], j[rows]]) < ROAD_REACH]
+            nearer.append((ground, i[rows], j[rows]))
+    for ground, i, j in nearer:
+        ground.z[i, j] = np.nan
 
 
 def _covered(grounds, outlines, survey):

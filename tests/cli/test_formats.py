@@ -136,7 +136,7 @@ def test_a_trajectory_comes_from_postgis(survey, tmp_path, database):
 
 
 def test_who_opens_a_table_of_postgis_sees_the_style_and_learns_which_result_of_which_run_it_is(survey, tmp_path, database, qgis_app):
-    from lanewright.processing_provider.results.origin import origin_of
+    from lanewright.processing_provider.results.road_maps import origin_of
     from qgis.core import QgsVectorLayer
 
     where, _ = database

@@ -19,7 +19,7 @@ from curbed_streets import street, survey_of
 from executed_boundaries import Heard, numbers_of
 from executed_boundaries import boundaries as boundaries_by
 from executed_stages import PHASES as STAGE_PHASES
-from executed_stages import found_by
+from executed_stages import found_by, functions_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
@@ -30,7 +30,7 @@ from lanewright.core.execution.tasks import versions
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
-from lanewright.core.survey import survey_reader
+from lanewright.core.survey import blocks
 from lanewright.core.survey.blocks import sensor_height_of
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.survey import SurveySettings
@@ -55,7 +55,7 @@ class AtPhase:
 
     def run(self, phase, items, *others, **named):
         for k, result in enumerate(self.executor.run(phase, items, *others, **named)):
-            if k == 0 and phase.function.__name__ == self.name:
+            if k == 0 and self.name in functions_of(phase, items):
                 self.act()
             yield result
 
@@ -333,7 +333,7 @@ def sample(tmp_path_factory):
 def points_read(sample, monkeypatch, progress=Progress(), **execution):
     """All points of the survey as bytes, read in parts of 50,000 points, and what was sent where."""
     made, path = sample
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=50_000))
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=50_000))
     survey = open_survey([path], made.trajectory, SurveySettings(block=20_000), progress, ExecutionSettings(**execution))
     with contextlib.closing(survey.store):
         parts = [np.array(survey.section(road, number).records) for road in survey.store.roads() for number in survey.store.sections(road)]

@@ -18,6 +18,10 @@ WARNING = ("The points are too few to find curbs along 30 m, where none was draw
            "station 65 to 75 m): 55 per m² beside the limit of the road surface, some 14 cm apart.")
 
 
+def said(place):
+    return tuple(piece.text for piece in place.pieces)
+
+
 def piece(start, end, y=0.0, **row):
     place = dict(road=0, station_m=float(start), end_m=float(end), length_m=float(end - start))
     return f"LINESTRING Z ({start} {y} 100, {end} {y} 100)", {**place, **row}
@@ -43,12 +47,12 @@ def street(project, *warnings):
 
 
 def texts(road_map, *kinds):
-    return [text for place in doubts_of(road_map, kinds) for text in place.reasons]
+    return [text for place in doubts_of(road_map, kinds) for text in said(place)]
 
 
 def test_a_stretch_without_an_edge_is_a_place_and_the_mouth_of_a_side_street_is_none(project):
     places = doubts_of(street(project), ["edge"])
-    assert [place.reasons for place in places] == [("No road edge on the left for 30 m",)]
+    assert [said(place) for place in places] == [("No road edge on the left for 30 m",)]
     box = places[0].extent
     assert (box.xMinimum() - EAST, box.xMaximum() - EAST) == pytest.approx((50.0, 80.0), abs=0.01)
 
@@ -59,14 +63,14 @@ def test_surface_that_was_grown_is_a_place(project):
 
 def test_a_lane_that_ends_before_its_road_is_a_place(project):
     places = doubts_of(street(project), ["lane"])
-    assert [place.reasons for place in places] == [("Lane 1 ends here, 80 m before the end of the road",)]
+    assert [said(place) for place in places] == [("Lane 1 ends here, 80 m before the end of the road",)]
     assert places[0].middle.x() - EAST == pytest.approx(120.0, abs=0.5) and places[0].middle.y() == pytest.approx(NORTH - 2)
 
 
 def test_places_that_a_warning_names_are_places(project):
     places = doubts_of(street(project, WARNING, "The trajectory is rough."), ["warning"])
     assert [(place.station, len(place.pieces)) for place in places] == [(60.0, 1)], "both sides of a road, one place: it stands once"
-    assert places[0].reasons[0].startswith("Warning: The points are too few")
+    assert said(places[0])[0].startswith("Warning: The points are too few")
 
 
 def test_places_are_read_out_of_the_sentences_of_the_core():
@@ -90,7 +94,7 @@ def test_within_a_place_the_most_doubtful_piece_comes_first(project):
     added(project, "DRIVING_LINES", DRIVING_LINES, piece(10, 30, lane=1, status="bridged", confidence=0.99),
           piece(12, 32, lane=2, status="measured", confidence=0.4))
     place, = doubts_of(road_maps(project)[0])
-    assert "Lane 2" in place.reasons[0] and place.doubt == pytest.approx(20 * 0.01 + 20 * 0.6)
+    assert "Lane 2" in said(place)[0] and place.doubt == pytest.approx(20 * 0.01 + 20 * 0.6)
 
 
 @pytest.mark.parametrize("other, words", [

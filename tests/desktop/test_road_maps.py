@@ -46,7 +46,7 @@ def test_a_geopackage_of_a_colleague_is_a_road_map(project, colleagues):
     assert road_map.layer("ROAD_EDGES") == borders and road_map.layer("DRIVING_LINES") == lanes
     assert road_map.survey == "B12" and road_map.values["MIN_HEIGHT"] == 0.08 and road_map.name.startswith("B12, 20")
     places = doubts_of(road_map)
-    assert [place.station for place in places] == [10.0] and "Road edge, left" in places[0].reasons[0]
+    assert [place.station for place in places] == [10.0] and "Road edge, left" in places[0].pieces[0].text
     assert section_at(EAST + 20, NORTH, road_map.vectors).azimuth == pytest.approx(90.0)
 
 

@@ -143,4 +143,5 @@ def test_doubts_come_along_the_road_and_those_of_one_place_together(project):
     added(project, "DRIVING_LINES", DRIVING_LINES, piece(14, lane=1, direction=1, status="inferred"))
     places = doubts_of(road_maps(project)[0])
     assert [place.station for place in places] == [10.0, 80.0]
-    assert len(places[0].reasons) == 2 and "Lane 1" in "".join(places[0].reasons) and places[0].extent.width() == pytest.approx(12.0)
+    first = places[0]
+    assert len(first.pieces) == 2 and "Lane 1" in "".join(piece.text for piece in first.pieces) and first.extent.width() == pytest.approx(12.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import ROAD_EDGES
 from lanewright.desktop.overlay.swipe import Swipe, images_to_compare
-from lanewright.processing_provider.results.origin import OUTPUT
+from lanewright.processing_provider.results.road_maps import OUTPUT
 from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsRasterLayer, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMapToolPan

@@ -82,7 +82,7 @@ def test_a_german_qgis_process_speaks_german(tmp_path):
 
 def test_every_choice_of_a_dialog_has_a_word_in_german_or_is_a_name():
     from lanewright.algorithms.catalogue import ALGORITHMS
-    from lanewright.algorithms.texts import CHOICES, NAMES
+    from translations import CHOICES, NAMES
 
     choices = {choice for algorithm in ALGORITHMS for spec in algorithm().parameters for choice in getattr(spec, "choices", ())}
     assert choices <= {*CHOICES, *NAMES}
@@ -90,7 +90,7 @@ def test_every_choice_of_a_dialog_has_a_word_in_german_or_is_a_name():
 
 def test_a_choice_reads_german_and_keeps_its_value(german, provider, monkeypatch):
     from lanewright.algorithms.driving import RoadMap
-    from lanewright.desktop.choice_widget import ChoiceWrapper
+    from lanewright.desktop.dialog_wrapper import ChoiceWrapper
     from lanewright.processing_provider.parameters import qgis_parameter
     from processing.gui import ParametersPanel
     from processing.gui.AlgorithmDialog import AlgorithmDialog

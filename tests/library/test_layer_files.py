@@ -11,7 +11,7 @@ from lanewright.algorithms.vector_source import in_file_units, read_features, sc
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY, Features
 from lanewright.core.io.crs import in_metres, parse_crs, same_crs
-from lanewright.library import measured_lines
+from lanewright.library import layer_files
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
 from lanewright.products.scanline_layer import LineSpool
 from pyproj import CRS
@@ -162,7 +162,7 @@ def test_without_gdal_a_line_with_measures_is_refused_and_one_without_is_read(tm
     timed, plain = (f"{tmp_path}/drive.gpkg|layername={name}" for name in ("timed", "plain"))
     with_gdal = [vertices_of(next(LayerFile(value, "Trajectory").rows(measures=True))[0])[:, 2:].tolist() for value in (timed, plain)]
     np.testing.assert_equal(with_gdal, [[[0, 1], [0, 2]], [[5, np.nan], [5, np.nan]]])
-    monkeypatch.setattr(measured_lines, "find_spec", lambda name: None)
+    monkeypatch.setattr(layer_files, "find_spec", lambda name: None)
     with pytest.raises(RoadExtractionError, match="Trajectory has lines with measures, which needs GDAL"):
         next(LayerFile(timed, "Trajectory").rows(measures=True))
     wkb, _ = next(LayerFile(plain, "Trajectory").rows(measures=True))

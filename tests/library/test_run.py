@@ -13,7 +13,7 @@ import fiona
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
-from lanewright.library import Progress, algorithms, call, command_line, measured_lines, run
+from lanewright.library import Progress, algorithms, call, command_line, layer_files, run
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = {"LENGTH": 20, "PULSE_RATE": 20000}
@@ -120,8 +120,8 @@ def test_a_database_that_is_not_there_is_said_and_no_file_needs_to_be_named(surv
 
 
 def test_without_gdal_rasters_are_refused_with_what_to_install(survey, tmp_path, monkeypatch):
-    find = measured_lines.find_spec
-    monkeypatch.setattr(measured_lines, "find_spec", lambda name: None if name == "osgeo" else find(name))
+    find = layer_files.find_spec
+    monkeypatch.setattr(layer_files, "find_spec", lambda name: None if name == "osgeo" else find(name))
     for name, outputs in (("roadmap", {"INTENSITY_IMAGE": tmp_path / "i.tif"}), ("inspectsurvey", {"REPORT": tmp_path / "r.html",
                                                                                             "DENSITY": tmp_path / "d.tif"})):
         with pytest.raises(RoadExtractionError, match=r"raster, which needs GDAL's Python module.*lanewright\[gdal\].*python3-gdal"):
@@ -160,8 +160,8 @@ def test_scanlines_are_refused_before_the_work_where_they_cannot_be_written(surv
     inputs = {"POINT_CLOUDS": [survey / "s.laz"], "TRAJECTORY": survey / "drive.gpkg"}
     with pytest.raises(RoadExtractionError, match="lines with measures. Write a GeoPackage"):
         run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.fgb")
-    find = measured_lines.find_spec
-    monkeypatch.setattr(measured_lines, "find_spec", lambda name: None if name == "osgeo" else find(name))
+    find = layer_files.find_spec
+    monkeypatch.setattr(layer_files, "find_spec", lambda name: None if name == "osgeo" else find(name))
     with pytest.raises(RoadExtractionError, match="Normalized scanlines are lines with measures, which needs GDAL's"):
         run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.gpkg")
 

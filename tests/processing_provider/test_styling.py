@@ -73,7 +73,7 @@ def test_every_result_has_a_style(name):
 @pytest.mark.parametrize("name", KINDS)
 def test_a_style_looks_at_fields_that_the_layer_has(qgis_app, name):
     layer = layer_of(*KINDS[name])
-    Styler.make(STYLES / f"{LOOKS[name][0]}.qml").postProcessLayer(layer, QgsProcessingContext(), None)
+    Styler(STYLES / f"{LOOKS[name][0]}.qml").postProcessLayer(layer, QgsProcessingContext(), None)
     used = {column for name in layer.renderer().usedAttributes(QgsRenderContext()) for column in QgsExpression(name).referencedColumns()}
     assert used and used <= {field.name() for field in layer.fields()}
 
@@ -220,7 +220,7 @@ def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):
     dataset.GetRasterBand(1).WriteRaster(0, 0, 100, 100, values.tobytes())
     del dataset
     layer = QgsRasterLayer(path, "image")
-    Styler.make(STYLES / "intensity_image.qml").postProcessLayer(layer, QgsProcessingContext(), None)
+    Styler(STYLES / "intensity_image.qml").postProcessLayer(layer, QgsProcessingContext(), None)
     stretch = layer.renderer().contrastEnhancement()
     assert 3000 <= stretch.minimumValue() < 3300 and 8700 < stretch.maximumValue() <= 9000
     assert stretch.minimumValue() % 1 == stretch.maximumValue() % 1 == 0, "the legend is read by people"

@@ -13,7 +13,7 @@ application = QgsApplication([], False)
 application.initQgis()
 sys.path.insert(0, {tests!r})
 import conftest
-from lanewright.processing_provider.task_threads import keep_task_threads
+from lanewright.processing_provider.provider import keep_task_threads
 manager, made = application.taskManager(), []
 manager.threadPool().setExpiryTimeout(100)
 keep_task_threads()

@@ -76,7 +76,7 @@ def placing(size):
 
 def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
-    from lanewright.core.survey import survey_reader as reading
+    from lanewright.core.survey import blocks as reading
     from lanewright.core.survey.blocks import DECODED_LAYERS
     from lanewright.core.survey.las.reader import read_blocks
     from lanewright.core.survey.open_survey import open_survey
@@ -98,8 +98,11 @@ def storing(size):
         def __exit__(self, *problem):
             pass
 
-        def blocks(self, files, size):
-            return (lambda block=block: block for file in files for block in decoded[file.path])
+        def ranges(self, files, size):
+            return ((number, k, len(block)) for number, file in enumerate(files) for k, block in enumerate(decoded[file.path]))
+
+        def points(self, file, number, count, size):
+            return (decoded[file.path][number],)
 
     reading.ParallelCloudReader = Decoded
     threads_alone()
@@ -148,13 +151,15 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
+    from lanewright.core.execution.in_step import in_step
+    from lanewright.core.execution.phase import THREADS
     from lanewright.core.markings.objects.cluster import ClusterSettings
     from lanewright.core.markings.objects.grouping import connected_points
     from lanewright.core.survey.store.road_points import columns_of_roads
 
     points = _paint(size)
     road = points.roads()[0]
-    ((_, labels), *_), seconds = timed(lambda: connected_points(points, ClusterSettings.distance))
+    ((labels, *_),), seconds = timed(lambda: in_step([connected_points(points, ClusterSettings.distance)], THREADS))
     clusters = np.empty(len(labels), np.int64)
     clusters[columns_of_roads(points.store, [road], ("time",))["time"].astype(np.int64)] = labels
     np.save(prepared("clusters_ours.npy", size), clusters)

@@ -77,7 +77,7 @@ def by_library(python, path):
 def row(path, folder, python):
     """The row of a map; what a step refused stands in the last column."""
     from lanewright.core.common.errors import RoadExtractionError
-    from lanewright.library.run import run
+    from lanewright.library import run
     from lanewright.products.export.sources import border_misses
 
     there, back = folder / f"{path.stem}.osm", folder / f"{path.stem}.xodr"

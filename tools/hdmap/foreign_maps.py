@@ -213,7 +213,7 @@ def _worker(work, limit, pipe):
 def read(path, table, crs, algorithm):
     """Layers of a map file in GeoPackages, with the warnings."""
     from lanewright.core.common.progress import Progress
-    from lanewright.library.run import run
+    from lanewright.library import run
 
     said = []
     progress = Progress()
@@ -226,7 +226,7 @@ def read(path, table, crs, algorithm):
 def write(algorithm, table, output, more):
     """A map file of the layers."""
     from lanewright.core.common.progress import Progress
-    from lanewright.library.run import run
+    from lanewright.library import run
 
     said, layers = [], {}
     progress = Progress()

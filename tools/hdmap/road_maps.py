@@ -69,8 +69,8 @@ def results(folder):
 def _source(folder):
     from lanewright.algorithms.export import road_map_source
     from lanewright.core.common.progress import Progress
+    from lanewright.library import algorithms
     from lanewright.library.call import FileCall
-    from lanewright.library.run import algorithms
 
     files = {name: str(folder / file) for name, file in LAYERS.items() if (folder / file).exists()}
     if (folder / ROAD_POINTS).exists():

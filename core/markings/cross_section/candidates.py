@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -138,6 +138,7 @@ class Candidates:
     valid: np.ndarray   # (I, M) False where there are fewer boundaries than M
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
     wide: np.ndarray   # (I, M) as there, NaN of double lines
+    drift: np.ndarray   # (I, M, 2) m, how far left of those offsets a boundary lies where an interval begins and where it ends
     beside: np.ndarray   # (I, M, 2, 4) as `lanes_beside` gives it; NaN before
 
     @property
@@ -153,6 +154,10 @@ class Candidates:
     def take(self, intervals: slice | np.ndarray) -> Candidates:
         """Some of the intervals."""
         return Candidates(**{name: values[intervals] for name, values in vars(self).items()})
+
+    def at_end(self, end: int) -> Candidates:
+        """The boundaries where the intervals begin, 0, or where they end, 1."""
+        return replace(self, left=self.left + self.drift[..., end], right=self.right + self.drift[..., end])
 
     @property
     def length(self) -> np.ndarray:
@@ -229,7 +234,9 @@ def _entries(boundaries, intervals, size, weights):
     made_of = np.where(boundaries.painted[row], np.select([double > 0.5, dashed > 0.5], [DOUBLE, DASHED], SOLID),
                        np.where(edge > 0.5, PAVEMENT, boundaries.made_of[row]))
     trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
-    return dict(interval=intervals.of, row=row, d=intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations, made=made_of,
+    d = intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations
+    head, tail = (np.nan_to_num(boundaries.d.values[places] - d) for places in (intervals.begin, np.append(intervals.begin[1:], len(present)) - 1))
+    return dict(interval=intervals.of, row=row, d=d, head=head, tail=tail, made=made_of,
                 wide=intervals.means(boundaries.wide.values),
                 seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made_of <= DOUBLE, trust, 1.0))
 
@@ -296,4 +303,5 @@ def _table(groups, boundaries, first, last):
     valid[:, [0, -1]] = True
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
-                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan), np.full((*shape, 2, 4), np.nan))
+                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
+                      np.stack([column(groups[name], 0.0) for name in ("head", "tail")], axis=2), np.full((*shape, 2, 4), np.nan))

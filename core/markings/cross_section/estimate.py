@@ -87,10 +87,11 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
             piece = candidates.take(part)
             # which rows of a table they are does not matter
             pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, part.stop), first_direction))
-    place, shared = lambda item: "the lanes of a road", (lane_width, weights)
-    chosen = executor.run(Phase(sections_of_stretch, NoSource(), shared, place), pieces, progress.part(0.0, 0.6))
-    items = [(*road, Sections.joined([next(chosen) for _ in of_road])) for road, of_road in zip(roads, stretches)]
-    return executor.run(Phase(estimate_of_road, NoSource(), shared, place), items, progress.part(0.6, 1.0))
+    phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
+    chosen = executor.run(phase, pieces, progress)
+    for road, of_road in zip(roads, stretches):
+        check_cancelled()
+        yield _estimate_of_road(*road, Sections.joined([next(chosen) for _ in of_road]), lane_width, weights)
 
 
 def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> Sections:
@@ -102,9 +103,8 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int]
     return sections
 
 
-def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int, Sections], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
-    """The phase that finds the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
-    candidates, evidence, first_direction, sections = item
+def _estimate_of_road(candidates, evidence, first_direction, sections, lane_width, weights):
+    """The RoadEstimate of the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
     sections = replace(sections, cost=sections.cost.copy())
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
@@ -222,7 +222,7 @@ def _lane_spans(estimate, part):
         _second_readings(estimate, lanes, lane_rows, way, part), _second_places(estimate, lanes, strips, lane_rows, way))]
     k = 0
     of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
-    beside = beside_of(c, strips.interval[best], strips.left[best], strips.right[best])
+    beside = beside_of(c, strips)[best]
     for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]
@@ -263,7 +263,7 @@ def _lanes_of(estimate, strips):
 def _lanes(c, lane_width, first_direction, strips):
     row = strips.interval
     d_left, width_each = lane_places(c.right[row, strips.left], c.left[row, strips.right], c.made_of[row, strips.left], c.made_of[row, strips.right],
-                                     strips.number, lane_width, beside_of(c, row, strips.left, strips.right))
+                                     strips.number, lane_width, beside_of(c, strips))
     of = np.repeat(np.arange(len(row)), strips.number)
     place = np.arange(len(of)) - (np.cumsum(strips.number) - strips.number)[of]
     way = np.where(place < strips.first[of], first_direction, -first_direction)
@@ -342,7 +342,7 @@ def _second_places(estimate, lanes, strips, rows, way):
     c, intervals, strip = estimate.candidates, lanes.interval[rows], lanes.strip[rows]
     left, right = strips.left[strip], strips.right[strip]
     open_left, open_right = UNPAINTED[c.made_of[intervals, left]], UNPAINTED[c.made_of[intervals, right]]
-    beside = beside_of(c, intervals, left, right)
+    beside = beside_of(c, strips)[strip]
     d = np.where(open_left, c.left[intervals, right] + beside[:, SECOND_WIDTH] / 2, c.right[intervals, left] - beside[:, SECOND_WIDTH] / 2)
     known = (open_left ^ open_right) & (strips.number[strip] == 1) & np.isfinite(beside[:, NATS]) & (np.abs(d - lanes.d[rows]) > SAME_LANE)
     result = [Reading(max(float(beside[k, NATS]), 0.0), ((float(d[k]), float(beside[k, SECOND_WIDTH]), int(way[k])),)) if known[k] else None

@@ -141,7 +141,7 @@ def _driven_bare(p, edges, painted):
     bare = sides.all(axis=0) & ~np.isin(np.rint(s / STATION_STEP), painted)
     reach = painted[[0, -1]] * STATION_STEP + ROADS.shortest_bare * np.array([-1, 1]) if len(painted) else np.zeros(2)
     return (np.concatenate([np.empty(0), *(s[first:end] for first, end in mask_runs(bare) if (end - first) * STATION_STEP >= ROADS.shortest_bare)]),
-            s[bare & (s > reach[0]) & (s < reach[1])])
+            s[sides.any(axis=0) & (s > reach[0]) & (s < reach[1])])
 
 
 def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):

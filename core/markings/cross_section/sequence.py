@@ -56,7 +56,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
     each_width = (left - right) / number
-    alone = np.where(np.equal(number, 1), beside[..., WIDTH], usual)
+    alone = np.where(np.equal(number, 1) & (beside[..., BEYOND] != 0), beside[..., WIDTH], usual)
     hidden = loose & beside_surface_end(made_left, made_right)
     # the room of an interval is not quite the same at all its places
     full = np.abs(each_width - alone) < SAME_LANE
@@ -67,9 +67,12 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     return np.where(apart, np.where(open_left, left - beside[..., BEYOND], right + beside[..., BEYOND] + each_width), begin), each_width
 
 
-def beside_of(c: Candidates, interval: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """(N, 4) of `lanes_beside` for strips between two boundaries of their intervals, on the inner side of the one that is painted."""
-    return np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
+def beside_of(c: Candidates, strips: LaneStrips) -> np.ndarray:
+    """(S, 4) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
+    interval, left, right = strips.interval, strips.left, strips.right
+    beside = np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
+    beside[strips.aside, BEYOND] = 0.0
+    return beside
 
 
 def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
@@ -89,14 +92,17 @@ def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndar
 # and again what nobody drives on
 REST_FIRST, FIRST, MOST_FIRST, BOTH, MOST_SECOND, SECOND, REST_SECOND = STRIPS = range(7)
 TWO_WAY = MOST_FIRST, BOTH, MOST_SECOND
+# one lane of either direction that lies beside the border without paint of a strip, and not beside its line, is another kind to choose from
+KINDS = np.array([*STRIPS, FIRST, SECOND])
+FIRST_ASIDE, SECOND_ASIDE = range(len(STRIPS), len(KINDS))
 
 
 @dataclass
 class _StripCosts:
     """Costs of all strips."""
 
-    cost: np.ndarray   # (7, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
-    lanes: np.ndarray   # (7, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
+    cost: np.ndarray   # (9, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
+    lanes: np.ndarray   # (9, I, M, M) int8, how many lanes it holds at that cost, and how many of them are of the direction that is met first
     first_lanes: np.ndarray
     lane_width: float
 
@@ -117,8 +123,8 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
     arrows_in, arrows = _arrows(c, evidence.arrows)
 
-    cost = np.full((len(STRIPS), count, size, size), np.inf)
-    lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), np.int8)
+    cost = np.full((len(KINDS), count, size, size), np.inf)
+    lanes, first_lanes = np.zeros((2, len(KINDS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
     unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
     # two lines on both sides are the border of a painted median: each is drawn as between the directions
@@ -144,21 +150,26 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     base = scale * (through + hatched * w.hatched_lane + uncovered * w.off_asphalt)
     driven_there = inside.any(0)
     beside = np.where(UNPAINTED[made_left][..., None], c.beside[:, None, :, 0], c.beside[:, :, None, 1])
-    for number in range(1, LANES.max_lanes + 1):
-        begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, beside)
+    aside = np.concatenate([beside[..., :BEYOND], np.zeros_like(beside[..., BEYOND:])], axis=-1)
+    for number, beside_there in [(1, aside), *((number, beside) for number in range(1, LANES.max_lanes + 1))]:
+        begin, width_each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, beside_there)
         fits = _width_cost(np.where(loose, np.minimum(width_each, lane_width), width_each), lane_width, w) \
             + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         if number == 1:
-            fits += w.driven_astride * (loose & (beside[..., BEYOND] >= 0))
+            fits += w.driven_astride * (loose & (beside_there[..., BEYOND] >= 0))
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > LANES.min_scanned_share * number * lane_width)
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
         built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there | loose)
+        if beside_there is aside:
+            built &= loose & ~hidden & np.isnan(beside[..., BEYOND]) & (width - width_each > w.driven_sigma)
         total = np.where(possible & scanned & built, total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
+            if beside_there is aside:
+                kind = FIRST_ASIDE if kind == FIRST else SECOND_ASIDE
             alike = max(split - 1, 0) + max(number - split - 1, 0)
             unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
             driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, width_each, number, split, first_direction, w)) \
@@ -306,6 +317,7 @@ class Sections:
     right: np.ndarray   # (I, K, M) int8, the boundary that the strip ends at
     lanes: np.ndarray   # (I, K, M) int8, how many lanes the strip holds, and how many of them are of the direction that is met first
     first_lanes: np.ndarray
+    aside: np.ndarray   # (I, K, M) bool, whether its lane lies beside the border without paint
 
     def take(self, intervals: slice | np.ndarray) -> Sections:
         """Those of some intervals."""
@@ -330,7 +342,7 @@ class LaneStrips:
     section: np.ndarray
     left: np.ndarray
     right: np.ndarray
-    kind: np.ndarray   # (S,) FIRST ... SECOND
+    aside: np.ndarray   # (S,) as of Sections
     number: np.ndarray   # (S,) lanes in them, and how many of these are of the direction that is met first
     first: np.ndarray
 
@@ -338,7 +350,8 @@ class LaneStrips:
 def lane_strips(sections: Sections) -> LaneStrips:
     """The LaneStrips of all cross-sections, in order of interval, cross-section and from left to right."""
     i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
-    return LaneStrips(i, k, m, *(values[i, k, m].astype(int) for values in (sections.right, sections.strip, sections.lanes, sections.first_lanes)))
+    right, number, first = (values[i, k, m].astype(int) for values in (sections.right, sections.lanes, sections.first_lanes))
+    return LaneStrips(i, k, m, right, sections.aside[i, k, m], number, first)
 
 
 def separated_kinds(sections: Sections) -> np.ndarray:
@@ -364,7 +377,7 @@ def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray,
                   kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval; `stops` are those of Evidence, `first_direction` is that of the lanes met first."""
     count, size = candidates.left.shape
-    kinds = len(STRIPS)
+    kinds = len(KINDS)
     between = _boundary_costs(candidates, stops, first_direction, weights)
     best = np.full((count, size, kinds, kept), np.inf)
     back = np.full((count, size, kinds, kept), -1, np.int32)
@@ -372,16 +385,16 @@ def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray,
     best[:, 0, REST_FIRST, 0] = 0.0
     for j in range(1, size - 1):
         reach = _reach(best, costs, j)
-        for kind in STRIPS:
+        for kind in range(kinds):
             back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
-    reach[:, :, FIRST:SECOND + 1] = np.inf
+    reach[:, :, (KINDS >= FIRST) & (KINDS <= SECOND)] = np.inf
     return _traced(back, _lowest(reach, kept), costs)
 
 
 def _reach(best, costs, j):
-    """(I, j, 7, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
+    """(I, j, 9, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
     return best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
 
 
@@ -396,7 +409,7 @@ def _lowest(values, kept):
 
 
 def _boundary_costs(c, stops, first_direction, w):
-    """(I, M, 7, 7) nats of a boundary between a strip on its left and one on its right."""
+    """(I, M, 9, 9) nats of a boundary between a strip on its left and one on its right."""
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     middle = (c.left + c.right) / 2
@@ -419,7 +432,7 @@ def _boundary_costs(c, stops, first_direction, w):
     # other lines may be none, and what else lies where nobody drives bounds nothing
     cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(
         c.painted, np.minimum(table[:, :, OTHER_LINE], w.paint_in_rest * _told(c)), 0.0)
-    return cost
+    return cost[:, :, KINDS][..., KINDS]
 
 
 def _traced(back, ends, costs):
@@ -427,19 +440,20 @@ def _traced(back, ends, costs):
     count, size, kinds, kept = back.shape
     chosen, value = ends
     strip, right, lanes, first_lanes = np.full((4, *chosen.shape, size), -1, np.int8)
+    aside = np.zeros(strip.shape, bool)
     row = np.arange(count)[:, None]
     end_boundary, pointer = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
     while (alive := pointer >= 0).any():
         boundary, remainder = np.divmod(pointer, kinds * kept)
         kind, rank = np.divmod(remainder, kept)
         r, k = np.nonzero(alive)
-        strip[r, k, boundary[alive]] = kind[alive]
+        strip[r, k, boundary[alive]], aside[r, k, boundary[alive]] = KINDS[kind[alive]], kind[alive] >= len(STRIPS)
         right[r, k, boundary[alive]] = end_boundary[alive]
         for values, of_strip in ((lanes, costs.lanes), (first_lanes, costs.first_lanes)):
             values[r, k, boundary[alive]] = of_strip[kind[alive], r, boundary[alive], end_boundary[alive]]
         end_boundary = np.where(alive, boundary, end_boundary)
         pointer = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
-    return Sections(value, strip, right, lanes, first_lanes)
+    return Sections(value, strip, right, lanes, first_lanes, aside)
 
 
 # The most probable sequence of cross-sections along a road, and how sure each is.
@@ -463,7 +477,9 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
         check_cancelled()
         intervals = known[first:first + INTERVALS_AT_ONCE + 1]
         window = slice(first, first + len(intervals) - 1)
-        changed, turned = _transition_costs(*_occupancy(candidates.take(intervals), sections.take(intervals), lane_width), weights)
+        before, behind = (_occupancy(candidates.take(of).at_end(end), sections.take(of), lane_width) for of, end in (
+            (intervals[:-1], 1), (intervals[1:], 0)))
+        changed, turned = _transition_costs(before, behind, weights)
         lanes, directions = (share[window, None, None] for share in left)
         # a lane that leads the other way behind a gap has turned, or it is another one that begins where the first ended
         with np.errstate(divide="ignore"):
@@ -480,7 +496,7 @@ def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) ->
     strips = lane_strips(sections)
     i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
     d_left, width_each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
-                                     lane_width, beside_of(candidates, i, m, end))
+                                     lane_width, beside_of(candidates, strips))
     d_right = d_left - number * width_each
     split = d_left - width_each * strips.first
     for direction, (high, low) in enumerate(((d_left, split), (split, d_right))):
@@ -503,30 +519,36 @@ def _occupancy(candidates: Candidates, sections: Sections, lane_width: float) ->
     return area, divider
 
 
-def _transition_costs(area, divider, weights):
-    """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction."""
-    first, second = area.astype(np.float32)
+def _transition_costs(before, behind, weights):
+    """Nats of going from a cross-section to one of the next interval: of lanes that begin, end or divide, and of those that change direction.
+
+    `before`, `behind` : the one and the other as of `_occupancy`, where the intervals meet
+    """
+    change, turn = weights.change * PLACE, weights.turn * PLACE
+    (ahead, back, lane, marks, wide), (ahead_behind, back_behind, lane_behind, marks_behind, wide_behind) = map(_compared, (before, behind))
+
+    def product(a, b):
+        return np.einsum("ikb,ilb->ikl", a, b, optimize=True)
+
+    inner, inner_behind = _core(lane), _core(lane_behind)
+    differs = inner.sum(-1)[:, :, None] + inner_behind.sum(-1)[:, None, :] - product(inner, lane_behind) - product(lane, inner_behind)
+    turned = product(_core(ahead), back_behind) + product(_core(back), ahead_behind)
+    lost = marks.sum(-1)[:, :, None] + marks_behind.sum(-1)[:, None, :] - product(marks, wide_behind) - product(wide, marks_behind)
+    return change * differs + weights.divider_change * np.clip(lost, 0, None), turn * turned
+
+
+def _compared(occupancy):
+    """Lanes of either direction, both together, borders between lanes, and these with the places where they are the same."""
+    (first, second), divider = occupancy[0].astype(np.float32), occupancy[1]
     wide = np.zeros(divider.shape, np.float32)
     for shift in range(-LANES.same_divider, LANES.same_divider + 1):
         wide = np.maximum(wide, np.roll(divider, shift, axis=-1))
-    marks = divider.astype(np.float32)
-    change, turn = weights.change * PLACE, weights.turn * PLACE
+    return first, second, first + second, divider.astype(np.float32), wide
 
-    def product(a, b):
-        return np.einsum("ikb,ilb->ikl", a[:-1], b[1:], optimize=True)
 
-    def core(values):
-        # borders that move by a place across are no change
-        return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
-
-    lane = first + second
-    inner, ahead, back = core(lane), core(first), core(second)
-    size = inner.sum(-1)
-    differs = size[:-1, :, None] + size[1:, None, :] - product(inner, lane) - product(lane, inner)
-    turned = product(ahead, second) + product(back, first)
-    number = marks.sum(-1)
-    lost = number[:-1, :, None] + number[1:, None, :] - product(marks, wide) - product(wide, marks)
-    return change * differs + weights.divider_change * np.clip(lost, 0, None), turn * turned
+def _core(values):
+    """Borders that move by a place across are no change."""
+    return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
 
 
 def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:

@@ -77,13 +77,10 @@ def _near(points, which):
     """Ascending rows of all points within the kernel of those at the rows `which`, and of some more."""
     column, row = _cells(points[which])
     marked = np.zeros(HASHED_CELLS, bool)
-    for right in (-1, 0, 1):
-        for up in (-1, 0, 1):
-            marked[_cell(column + np.int32(right), row + np.int32(up))] = True
-    rows = [np.empty(0, np.intp)]
-    for first in range(0, len(points), POINTS_LOOKED_AT):
-        rows.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
-    return np.concatenate(rows)
+    steps = np.arange(-1, 2, dtype=np.int32)
+    marked[_cell(column[:, None, None] + steps[:, None], row[:, None, None] + steps)] = True
+    return np.concatenate([np.empty(0, np.intp), *(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT]))))
+                                                   for first in range(0, len(points), POINTS_LOOKED_AT))])
 
 
 def _cells(points):
@@ -107,33 +104,29 @@ def _before_and_after(xyz, which, nearest, segments):
     for first in range(0, len(which), KERNELS_PER_BATCH):
         check_cancelled()
         rows = np.arange(first, min(first + KERNELS_PER_BATCH, len(which)))
-        owner, member = _around(tree, xyz, which[rows], CURVATURE_KERNEL)
+        around = tree.query_ball_point(xyz[which[rows]], CURVATURE_KERNEL)
+        owner, member = np.repeat(np.arange(len(rows)), [len(members) for members in around]), np.concatenate(around).astype(int)
         centre = rows[owner]
         step = xyz[member, :2] - nearest.xy[centre]
         along_line = np.abs(step[:, 1] * ahead[centre, 0] - step[:, 0] * ahead[centre, 1]) <= STRANDS.max_paint_distance
         owner, member, centre, step = owner[along_line], member[along_line], centre[along_line], step[along_line]
         count = np.bincount(owner, minlength=len(rows))
         offsets = xyz[member] - xyz[which[centre]]
-        result[0, rows] = _quadrics(offsets, count, CURVATURE_KERNEL)
+        result[0, rows] = _quadrics(offsets, count)
         _, height = segments.at(nearest.line[centre], nearest.station[centre] + (step * ahead[centre]).sum(axis=1))
-        result[1, rows] = _quadrics(np.c_[offsets[:, :2], height - nearest.z[centre]], count, CURVATURE_KERNEL)
+        result[1, rows] = _quadrics(np.c_[offsets[:, :2], height - nearest.z[centre]], count)
     return result
 
 
-def _around(tree, xyz, which, radius):
-    """(owner, member): which of the rows `which` has which point in its kernel, owner by owner."""
-    around = tree.query_ball_point(xyz[which], radius)
-    return np.repeat(np.arange(len(which)), [len(rows) for rows in around]), np.concatenate(around).astype(int)
-
-
-def _quadrics(off, count, radius):
+def _quadrics(off, count):
     """Mean curvature of neighbourhoods: (N, 3) points about each one's point, `count` (K,) of them after each other, none empty.
 
     H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5) of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame
     of the neighbours' principal directions; NaN with fewer than 12 neighbours, or if these lie in one or two lines.
     """
     values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
-    terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
+    radius, terms = CURVATURE_KERNEL, np.ones((7, int(count.max())))
+    scale = np.array([[radius], [radius], [1.0]])
     # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
     for k, (first, number) in enumerate(zip(np.cumsum(count) - count, count)):
         neighbours = off[first:first + number]

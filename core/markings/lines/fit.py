@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from ...common.arrays import stretch_of
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -71,62 +72,24 @@ class MarkingLineSettings:
 
 
 @dataclass
-class _LineShape:
-    """A line that can be drawn between two stations: the fit of its curve, whose residuals belong to the places at (K,) stations `s`."""
-
-    fit: CurveFit
-    wanted: bool   # whether the curve is of the wanted kind, not the automatic one
-    s: np.ndarray
-    station_to_u: tuple[np.ndarray, np.ndarray]
-    height: Profile   # above the trajectory, so that it goes on along the road's slope
-
-    def u(self, s: np.ndarray) -> np.ndarray:
-        """Arc length on the curve at stations s, going on evenly beyond the ends."""
-        stations, lengths = self.station_to_u
-        inside = np.interp(s, stations, lengths)
-        return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
-
-    def draw(self, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-        """(M,) stations from `first` to `last`, at most half a metre apart, and (M, 3) local places there; z above the trajectory."""
-        ends = self.u(np.array([first, last]))
-        count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
-        u = np.linspace(ends[0], ends[1], count)
-        stations, lengths = self.station_to_u
-        s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
-        return s, np.c_[self.fit.curve.at(u), self.height(s)]
-
-    def drawn(self, pieces: Sequence[tuple[float, float]]) -> _DrawnLine:
-        """The line between the first and the last station of each piece."""
-        residuals = [self.fit.residuals[slice(np.searchsorted(self.s, first), np.searchsorted(self.s, last, side="right"))] for first, last in pieces]
-        stations, places = zip(*(self.draw(first, last) for first, last in pieces))
-        return _DrawnLine(self.wanted, self.fit.curve, [self.u(np.array(ends)) for ends in pieces], stations, places,
-                          [float(np.sqrt(np.mean(off**2))) if len(off) else np.nan for off in residuals])
-
-
-@dataclass
 class _DrawnLine:
     """A line that was fitted, piece by piece.
 
-    wanted : whether its curve is of the wanted kind; arc : arc lengths on the curve at both ends of each piece
-    stations, places : (M,) and (M, 3) of each piece, as of `_LineShape.draw`
+    wanted : whether its curve is of the wanted kind, not the automatic one; arc : arc lengths on the curve at both ends of each piece
+    stations, places : (M,) stations of each piece, at most half a metre apart, and (M, 3) local places there; z above the trajectory
     rmse : m, of the paint of each piece about the curve, NaN where it has none
     """
 
     wanted: bool
     curve: Curve
-    arc: Sequence[np.ndarray]
-    stations: Sequence[np.ndarray]
-    places: Sequence[np.ndarray]
-    rmse: Sequence[float]
+    arc: list[np.ndarray]
+    stations: list[np.ndarray]
+    places: list[np.ndarray]
+    rmse: list[float]
 
 
 def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
-    """The phase that fits lines and draws their pieces; parameters as of `_shapes_of_lines`."""
-    return [shape.drawn(course.pieces) for shape, course in zip(_shapes_of_lines(courses, curve, degree), courses)]
-
-
-def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> list[_LineShape]:
-    """The shapes of some lines, with a curve of the wanted kind, where they can take it.
+    """The phase that fits lines, with a curve of the wanted kind where they can take it, and draws their pieces.
 
     curve, degree : as of MarkingLineSettings
     """
@@ -139,15 +102,35 @@ def _shapes_of_lines(courses: Sequence[_Course], curve: str, degree: int) -> lis
     for k, t, guided in zip(curved, along, fit_splines([(courses[k].x, courses[k].y) for k in curved], along)):
         fits[k], guesses[k] = guided, guided.curve.u_of(t)
     heights = smooth_profiles([(course.s[course.own], course.z) for course in courses], STRANDS.line_height_smoothing)
-    shapes = []
+    drawn = []
     for course, fit, guess, of_kind, height in zip(courses, fits, guesses, wanted, heights):
         u, e = fit.curve.project(course.x, course.y, guess)
         if guess is not None:
             fit = CurveFit(fit.curve, e[course.own], fit.parameters)
-        rising = np.maximum.accumulate(u)
-        keep = np.append(True, np.diff(rising) > 1e-6)
-        shapes.append(_LineShape(fit, of_kind, course.s[course.own], (course.s[keep], rising[keep]), height))
-    return shapes
+        drawn.append(_drawn_line(course, fit, of_kind, np.maximum.accumulate(u), height))
+    return drawn
+
+
+def _drawn_line(course: _Course, fit: CurveFit, wanted: bool, u: np.ndarray, height: Profile) -> _DrawnLine:
+    """The line between the first and the last station of each piece; u : (N,) arc lengths of the places of the course, which never fall."""
+    keep = np.append(True, np.diff(u) > 1e-6)
+    measured, stations, lengths = course.s[course.own], course.s[keep], u[keep]
+    line = _DrawnLine(wanted, fit.curve, [], [], [], [])
+    for first, last in course.pieces:
+        arc = _led_on(np.array([first, last]), stations, lengths)
+        along = np.linspace(arc[0], arc[1], max(2, int(np.ceil((arc[1] - arc[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1))
+        s, residuals = _led_on(along, lengths, stations), fit.residuals[stretch_of(measured, first, last)]
+        line.arc.append(arc)
+        line.stations.append(s)
+        # heights above the trajectory go on along the road's slope
+        line.places.append(np.c_[fit.curve.at(along), height(s)])
+        line.rmse.append(float(np.sqrt(np.mean(residuals**2))) if len(residuals) else np.nan)
+    return line
+
+
+def _led_on(at, places, values):
+    """Values at places, interpolated, and going on evenly beyond both ends."""
+    return np.interp(at, places, values) + np.minimum(at - places[0], 0.0) + np.maximum(at - places[-1], 0.0)
 
 
 @dataclass(frozen=True)
@@ -178,7 +161,7 @@ def _courses(selected, places, road, track_height):
 
 def _places(line, trend, edges, span):
     """(N,) stations and offsets of a line, beyond its paint, too, whether they are its own, and the heights of those."""
-    s, d, z, weight = line.places()
+    s, d, z, weight = line.places
     strong = weight >= STRANDS.min_points_per_place
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
@@ -263,7 +246,7 @@ def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float,
     curbs, pavement = EdgeSections.of(edges)
     estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
                                paint=paint, pavement=pavement, progress=progress, taken=taken)
-    kinds, second = _line_kinds(estimates), _second_kinds(estimates)
+    kinds, second = _kinds_of_lines(estimates)
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
     kind = np.array([kinds.get(number, drawn_kind) for number, drawn_kind in zip(lines.line.tolist(), drawn)], object)
@@ -284,27 +267,16 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     same_road = markings.road[rows[marking]] == lines.course.road[line]
     kind = markings.kind.copy()
     kind[rows[marking][same_road]] = lines.kind[line[same_road]]
-    return with_paint_between_tracks(markings.with_kinds(kind), lines)
+    return with_paint_between_tracks(replace(markings, kind=kind), lines)
 
 
-def _line_kinds(estimates):
-    """{number of a marking line: edge, lane or centre}, by what most of it separates; lines that bound no lane are not in it."""
-    votes: dict[int, np.ndarray] = {}
-    for road in estimates.roads.values():
-        c, uses = road.estimate.candidates, boundary_uses(road.estimate)
-        for i, m in zip(*np.nonzero((uses >= 0) & np.isin(uses, list(KINDS)))):
-            for row in set(c.rows[i, m].tolist()) - {-1}:
-                if not road.boundaries.painted[row]:
-                    continue
-                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
-                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    votes.setdefault(int(number), np.zeros(len(KINDS)))[uses[i, m]] += count
-    return {number: KINDS[int(np.argmax(counts))] for number, counts in votes.items()}
+def _kinds_of_lines(estimates):
+    """{number of a marking line: edge, lane or centre}, by what most of it separates, and {number: its second kind as JSON}.
 
-
-def _second_kinds(estimates):
-    """{number of a marking line: its second kind as JSON}, of lines that are almost as probable to separate something else along most of them."""
-    behind: dict[int, list[tuple[float, np.ndarray]]] = {}
+    Lines that bound no lane are in neither, and in the second are those alone that are almost as probable to separate something else along most
+    of them.
+    """
+    parts: dict[int, list[tuple[float, int, np.ndarray]]] = {}
     for road in estimates.roads.values():
         c, estimate = road.estimate.candidates, road.estimate
         uses, kinds = boundary_uses(estimate), separated_kinds(estimate.sections)
@@ -315,16 +287,17 @@ def _second_kinds(estimates):
             for row in set(c.rows[i, m].tolist()) - {-1}:
                 numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
                 for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    behind.setdefault(int(number), []).append((float(count), gaps))
-    result, doubt = {}, EstimateWeights().doubt
-    for number, parts in behind.items():
-        count, gaps = (np.array(values) for values in zip(*parts))
+                    parts.setdefault(int(number), []).append((float(count), int(uses[i, m]), gaps))
+    first, second, doubt = {}, {}, EstimateWeights().doubt
+    for number, of_line in parts.items():
+        count, use, gaps = (np.array(values) for values in zip(*of_line))
+        first[number] = KINDS[int(np.bincount(use, count).argmax())]
         share = (count[:, None] * (gaps < doubt)).sum(axis=0) / count.sum()
-        second = int(np.argmax(share))
-        if share[second] > 0.5:
-            close = gaps[:, second][gaps[:, second] < doubt]
-            result[number] = json.dumps({"nats": round(max(float(np.median(close)), 0.0), 2), "kind": list(KINDS.values())[second]})
-    return result
+        likely = int(np.argmax(share))
+        if share[likely] > 0.5:
+            close = gaps[:, likely][gaps[:, likely] < doubt]
+            second[number] = json.dumps({"nats": round(max(float(np.median(close)), 0.0), 2), "kind": list(KINDS.values())[likely]})
+    return first, second
 
 
 LINES_SHARE = 0.65   # derived: of the work, half of it to link lines; the rest is the estimate that names the lines
@@ -351,8 +324,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     edge_sections = EdgeSections.of(edges)
     executor = THREADS if road_points is None else road_points.executor
     selected, courses, dropped = _traced(clustered_points, markings, frame, edge_sections, settings, executor, progress.part(0.0, LINES_SHARE / 2))
-    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
-    fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines",
+                  listed=STRANDS.fitted_together)
+    fitted = list(executor.run_together(phase, courses, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
     progress.info(f"Marking lines: {len(fitted)}; {dropped} fragments were left out.")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -44,7 +43,7 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
     if not lines:
         return []
-    places = [line.places() for line in lines]
+    places = [line.places for line in lines]
     owner = np.repeat(np.arange(len(lines)), [len(s) for s, *_ in places])
     s, d, weight = (np.concatenate([columns[k] for columns in places]) for k in (0, 1, 3))
     tips = np.array([line.first if at_start else line.last for line in lines])
@@ -67,20 +66,14 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span, unknown]).tolist()]
 
 
-def _lateral_mismatch(before: _End, after: _End) -> float:
-    """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the smaller of two, if lines go on as
-    they pointed, and if they go on parallel to the others (a short dash hardly knows its own slope)."""
-    middle = (before.s + after.s) / 2
-    return min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, _trust(before, after)))
-
-
 def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:
-    """The same, or less where both run along one edge of the road and keep their distance from it.
+    """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the least of several views.
 
-    The better of two views counts again: the distance of their tips, where they lead straight, or where they are painted, as along a taper
-    on which they bend; that view is of gaps, and says nothing of pieces that touch.
+    Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope. Or both keep their distance from one
+    edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That last view is of gaps alone.
     """
-    miss = _lateral_mismatch(before, after)
+    middle, reach = (before.s + after.s) / 2, min(before.reach, after.reach)
+    miss = min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, reach**2 / (reach**2 + 4.0)))
     s = np.array([before.s, after.s])
     d = np.array([before.d, after.d]) + trend.at(s)
     edge = edges.between((s[0], d[0]), (s[1], d[1]))
@@ -89,13 +82,8 @@ def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, end
     miss = min(miss, float(np.ptp(d - edge(s))))
     if after.s - before.s <= LINKS.max_strand_overlap:
         return miss
-    clearances = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places(False), begins.end_places(True))]
+    clearances = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places[0], begins.end_places[1])]
     return min(miss, abs(clearances[1] - clearances[0]))
-
-
-def _trust(before, after):
-    reach = min(before.reach, after.reach)
-    return reach**2 / (reach**2 + 4.0)
 
 
 def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
@@ -227,7 +215,7 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
     """The line less short strands that lie off the course of the paint before and after them, be that with the other lines or along an edge."""
     if len(line.strands) < 3:
         return line
-    s, d, _, weight = line.places()
+    s, d, _, weight = line.places
     owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
     order = np.argsort(s, kind="stable")
     s, d, weight, owner = s[order], d[order], weight[order], owner[order]
@@ -345,11 +333,9 @@ def _slopes(strands):
 
 def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """(G,) weighted medians of groups of (N,) values, ascending within each group, that begin at `starts`."""
-    if not len(starts):
-        return np.empty(0)
     count = np.diff(np.append(starts, len(values)))
     # a row for every group, so that each sums its own weights and nothing else
-    table = np.zeros((len(starts), int(count.max())))
+    table = np.zeros((len(starts), int(count.max(initial=0))))
     column = np.arange(len(values)) - np.repeat(starts, count)
     table[np.repeat(np.arange(len(starts)), count), column] = weight
     share = np.cumsum(table, axis=1)
@@ -390,14 +376,6 @@ def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:
 UNKNOWN, BARE, FREE = 0, 1, 2
 
 
-class _SeenPaint(NamedTuple):
-    """What is known of the paint of a line: the spacing of the tracks that it was seen on, m, its brightness and its width, m."""
-
-    spacing: float
-    brightness: float
-    width: float
-
-
 def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: RoadPoints, road_points: RoadPoints) -> PaintedLines:
     """Lines that know, in `unseen`, where in their gaps they lie between two tracks of the scan.
 
@@ -409,21 +387,24 @@ def with_unseen_paint(lines: PaintedLines, markings: MarkingObjects, paint: Road
     marked = _MarkedLines(lines, markings)
     for k in np.flatnonzero((lines.status == "bridged") & (lines.pattern == "solid")).tolist():
         check_cancelled()
-        road, (whole_course, members) = int(lines.course.road[k]), marked.of_piece(k)
+        road, (course, members) = int(lines.course.road[k]), marked.of_piece(k)
         piece = lines.course.s[lines.course.line(k)]
         first, last = float(np.nanmin(piece)), float(np.nanmax(piece))
-        course = _between(whole_course, first - 2 * TREND.beside_gap, last + 2 * TREND.beside_gap)
-        line_paint = _paint_beside(paint, road, course, first, last, _full_width(markings, members))
-        if line_paint is None or line_paint.spacing < TRACKS.min_track_gap:
+        # few tracks show less of the width of a line and never more
+        width = float(markings.width[members][markings.length[members] >= TREND.min_seen_length].max(initial=0.0))
+        points = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
+        on_line = (points.cluster > 0) & (np.abs(points.d - np.interp(points.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
+        if not on_line.any() or not width or median(points.spacing[on_line].astype(float)) < TRACKS.min_track_gap:
             continue
+        brightness = median(points.value[on_line].astype(float))
         near_gap = members[(markings.extent[members, 0] <= last) & (markings.extent[members, 1] >= first)]
         gaps = _less(first, last, markings.extent[near_gap, :2])
         steps = [np.linspace(a, b, int(np.ceil((b - a) / TREND.step)) + 1) for a, b in gaps]
-        states = [_states(road_points, road, course, stations, line_paint) for stations in steps]
+        states = [_states(road_points, road, course, stations, width, brightness) for stations in steps]
         state_of_steps = np.concatenate([*states, np.empty(0, int)])
         if np.count_nonzero(state_of_steps == BARE) <= TREND.max_bare_share * np.count_nonzero(state_of_steps != UNKNOWN):
             free = [(stations[a], stations[b]) for stations, state in zip(steps, states) for a, b in mask_runs(state == FREE)]
-            unseen[k] = np.array([(a, b, line_paint.width) for a, b in free if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
+            unseen[k] = np.array([(a, b, width) for a, b in free if b - a >= TREND.shortest_unseen]).reshape(-1, 3)
     return replace(lines, unseen=unseen)
 
 
@@ -431,92 +412,57 @@ class _MarkedLines:
     """The courses of lines and the markings on them, looked up once for each line."""
 
     def __init__(self, lines, markings):
-        self.lines, self.markings, self.found = lines, markings, {}
-        self.pieces = {}
-        for k, number in enumerate(lines.line.tolist()):
-            self.pieces.setdefault(number, []).append(k)
+        self.lines, self.markings, self.known = lines, markings, {}
         of_lines = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS) & np.isfinite(markings.extent[:, 0]))
         self.markings_of = {road: of_lines[markings.road[of_lines] == road] for road in np.unique(lines.course.road).tolist()}
         self.lookup = {road: StretchLookup(*markings.extent[rows, :2].T) for road, rows in self.markings_of.items()}
 
     def of_piece(self, k):
         """Of the line of a piece: (2, N) stations and offsets by station, and the numbers of the markings that lie on its course."""
-        key = int(self.lines.course.road[k]), int(self.lines.line[k])
-        if key not in self.found:
-            course = self._course(key[1])
-            self.found[key] = course, self._own_markings(key[0], course)
-        return self.found[key]
-
-    def _course(self, number):
         course = self.lines.course
-        rows = np.concatenate([np.arange(course.start[k], course.start[k + 1]) for k in self.pieces[number]])
-        rows = rows[np.isfinite(course.s[rows])]
-        rows = rows[np.argsort(course.s[rows], kind="stable")]
-        return course.s[rows], course.d[rows]
-
-    def _own_markings(self, road, course):
-        candidates = self.markings_of[road][self.lookup[road].between(course[0][0], course[0][-1])]
-        first, last, *_ = self.markings.extent[candidates].T
-        distance = np.abs(self.markings.offset[candidates] - np.interp((first + last) / 2, *course))
-        return candidates[(distance <= TREND.on_line) & (last > course[0][0]) & (first < course[0][-1])]
-
-
-def _between(course, first, last):
-    """The course of a line between two stations, and the places before and after."""
-    inside = slice(max(int(np.searchsorted(course[0], first)) - 1, 0), int(np.searchsorted(course[0], last, side="right")) + 1)
-    return course[0][inside], course[1][inside]
-
-
-def _full_width(markings, rows):
-    """The width of a line: that of the widest of its pieces, as few tracks show less of it and never more; 0 where nothing is known."""
-    long = rows[markings.length[rows] >= TREND.min_seen_length]
-    return float(markings.width[long].max()) if len(long) else 0.0
-
-
-def _paint_beside(paint, road, course, first, last, width):
-    """_SeenPaint of a line about a gap; None where there is none."""
-    points = paint.window(road, first - TREND.beside_gap, last + TREND.beside_gap)
-    on_line = (points.cluster > 0) & (np.abs(points.d - np.interp(points.s, *course)) <= max(width / 2, TRACKS.min_track_gap / 2))
-    if not on_line.any() or not width:
-        return None
-    return _SeenPaint(median(points.spacing[on_line].astype(float)), median(points.value[on_line].astype(float)), width)
+        key = road, number = int(course.road[k]), int(self.lines.line[k])
+        if key not in self.known:
+            rows = np.concatenate([np.arange(*course.start[j:j + 2]) for j in np.flatnonzero(self.lines.line == number)])
+            rows = rows[np.isfinite(course.s[rows])]
+            rows = rows[np.argsort(course.s[rows], kind="stable")]
+            s, d = course.s[rows], course.d[rows]
+            candidates = self.markings_of[road][self.lookup[road].between(s[0], s[-1])]
+            first, last, *_ = self.markings.extent[candidates].T
+            distance = np.abs(self.markings.offset[candidates] - np.interp((first + last) / 2, s, d))
+            self.known[key] = (s, d), candidates[(distance <= TREND.on_line) & (last > s[0]) & (first < s[-1])]
+        return self.known[key]
 
 
 def _less(first, last, spans):
-    """[(first, last)] of what is left of an interval without some others."""
-    left, position = [], first
-    for begin, end in sorted(spans.tolist()):
-        if begin > position:
-            left.append((position, min(begin, last)))
-        position = max(position, end)
-        if position >= last:
-            break
-    left.append((position, last))
-    return [(a, b) for a, b in left if b - a >= TREND.shortest_unseen]
+    """[[first, last]] of what is left of an interval without some others, (K, 2)."""
+    spans = spans[np.argsort(spans[:, 0], kind="stable")]
+    reached = np.maximum.accumulate(np.append(first, spans[:, 1]))
+    left = np.column_stack([reached, np.minimum(np.append(spans[:, 0], last), last)])
+    return left[left[:, 1] - left[:, 0] >= TREND.shortest_unseen].tolist()
 
 
-def _states(road_points, road, course, steps, seen):
-    """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given."""
+def _states(road_points, road, course, steps, width, brightness):
+    """(N,) FREE, BARE or UNKNOWN of each of the N steps of a gap, whose N + 1 stations are given, in a line of some width (m) and brightness."""
     points = road_points.window(road, steps[0] - TREND.step_reach, steps[-1] + TREND.step_reach)
     s, offset, value = points.s, points.d - np.interp(points.s, *course), points.value
     close = np.abs(offset) <= TRACKS.max_track_gap
     s, offset, value = s[close], offset[close], value[close]
-    clear = np.abs(offset) > seen.width / 2 + TRACKS.min_track_gap
+    clear = np.abs(offset) > width / 2 + TRACKS.min_track_gap
     if not clear.any():
         return np.full(len(steps) - 1, UNKNOWN)
-    dark = value < (median(value[clear].astype(float)) + seen.brightness) / 2
+    dark = value < (median(value[clear].astype(float)) + brightness) / 2
     count = len(steps) - 1
     low, high, painted = np.full(count, -np.inf), np.full(count, np.inf), np.zeros(count, bool)
     # a point counts for the step that it lies in and for those that it lies near
     for reach in (-TREND.step_reach, 0.0, TREND.step_reach):
         step = np.searchsorted(steps, s + reach, side="right") - 1
         inside = (step >= 0) & (step < count)
-        below, above, on_paint = inside & dark & (offset <= 0), inside & dark & (offset >= 0), inside & ~dark & (np.abs(offset) <= seen.width / 2)
+        below, above, on_paint = inside & dark & (offset <= 0), inside & dark & (offset >= 0), inside & ~dark & (np.abs(offset) <= width / 2)
         np.maximum.at(low, step[below], offset[below])
         np.minimum.at(high, step[above], offset[above])
         painted[step[on_paint]] = True
     room, nearest = high - low, np.minimum(high, -low)
-    bare = (room < TREND.min_free_share * seen.width) | (nearest < TREND.core_share * seen.width)
+    bare = (room < TREND.min_free_share * width) | (nearest < TREND.core_share * width)
     return np.where(bare, BARE, np.where(painted | (room <= TRACKS.max_track_gap), FREE, UNKNOWN))
 
 
@@ -542,7 +488,8 @@ def with_paint_between_tracks(markings: MarkingObjects, lines: PaintedLines) -> 
     first, last, _, _, offset, width = np.array(spans).T
     more = replace(markings[np.array(templates)], outlines=Outlines.of(polygons), station=first, offset=offset, length=last - first, width=width,
                    elongation=(last - first) / width, points=np.zeros(len(templates)), extent=np.array(spans)[:, :4])
-    return _together(markings, more)
+    columns = {name: np.concatenate([values, getattr(more, name)]) for name, values in vars(markings).items() if isinstance(values, np.ndarray)}
+    return replace(markings, **columns, outlines=Outlines.of(np.concatenate([markings.outlines.polygons(), more.outlines.polygons()])))
 
 
 def _strip(lines, k, first, last, width):
@@ -558,10 +505,3 @@ def _strip(lines, k, first, last, width):
     aside = np.column_stack([-direction[:, 1], direction[:, 0]]) * width / 2
     sides = [np.column_stack([x, y, z]) + np.column_stack([sign * aside, np.zeros(len(x))]) for sign in (1.0, -1.0)]
     return shapely.Polygon(np.concatenate([sides[0], sides[1][::-1]])), d
-
-
-def _together(markings, more):
-    """Two MarkingObjects as one."""
-    polygons = np.concatenate([markings.outlines.polygons(), more.outlines.polygons()])
-    columns = {name: np.concatenate([values, getattr(more, name)]) for name, values in vars(markings).items() if isinstance(values, np.ndarray)}
-    return replace(markings, **columns, outlines=Outlines.of(polygons))

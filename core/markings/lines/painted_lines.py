@@ -74,7 +74,6 @@ class PaintedLines(LayerRows):
             / np.maximum(np.bincount(row, length[has_rmse], len(number)), 1.0)
         return dict(zip(number.tolist(), np.sqrt(square).tolist()))
 
-
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(P,) fitted lines with Z in map coordinates.
 
@@ -91,7 +90,10 @@ class PaintedLines(LayerRows):
         numbers: dict[int, str] = {}   # by curve: once for all pieces, since those of long splines are long
         for curve in fitted.curve:
             if id(curve) not in numbers:
-                numbers[id(curve)] = json.dumps(_rounded(curve.moved(*frame.origin[:2]).params()))[:-1]
+                moved = curve.moved(*frame.origin[:2]).params()
+                # to 0.1 mm: a spline of a long road stays readable
+                moved.update({name: [round(value, 4) for value in moved[name]] for name in LONG_LISTS if name in moved})
+                numbers[id(curve)] = json.dumps(moved)[:-1]
         return dict(
             road=road, other=[None] * len(self) if self.other is None else [text or None for text in self.other],
             curve=[curve.kind for curve in fitted.curve], radius_m=[curve.radius if curve.kind == "circle" else None for curve in fitted.curve],
@@ -118,11 +120,6 @@ class PaintedLines(LayerRows):
         return PaintedLines(**columns, course=lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse, width=width)
 
 
-def _rounded(numbers: dict[str, Any]) -> dict[str, Any]:
-    """Long lists to 0.1 mm: a spline of a long road stays readable."""
-    return {key: [round(v, 4) for v in value] if key in LONG_LISTS else value for key, value in numbers.items()}
-
-
 def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
     """PaintedLines of one row a piece, as `pieces_of_lines` gives them; `unseen` may be missing."""
     def column(name: str, kind: Any) -> np.ndarray:
@@ -139,9 +136,7 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
 
 def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:
     """The pieces of lines that were fitted, one row each, as `painted_lines_of` takes them."""
-    fitted = lines.fitted
-    if fitted is None:
-        raise ValueError("Lines that were read from a layer have no fitted curves.")
+    fitted = cast(_FittedPieces, lines.fitted)
     return [dict(road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k], status=lines.status[k],
                  unseen=np.empty((0, 3)) if lines.unseen is None else lines.unseen[k], curve=fitted.curve[k], arc=fitted.arc[k],
                  places=fitted.vertices[fitted.start[k]:fitted.start[k + 1]],

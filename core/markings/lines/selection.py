@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -53,9 +52,11 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     """
     if not lines:
         return []
-    bars, neighbours, strands = _Bars(hatched), lines_beside(lines), _StrandsBeside(lines)
+    bars, neighbours = hatched[np.argsort(hatched[:, :2].mean(axis=1), kind="stable")], lines_beside(lines)
+    spans = np.array([(strand.first, strand.last) for line in lines for strand in line.strands]).reshape(-1, 2)
+    owner, strands = np.repeat(np.arange(len(lines)), [len(line.strands) for line in lines]), StretchLookup(*spans.T)
     parts = [stretches(line, longest_dash) for line in lines]
-    level = np.array([_level(line, trend) for line in lines])
+    level = np.array([median(d - trend.at(s)) for s, d, *_ in (line.places for line in lines)])
     painted = min(line.first for line in lines), max(line.last for line in lines)
     ragged, double = _beside(lines, neighbours, trend, longest_dash)
     selected = []
@@ -64,29 +65,13 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
         dashed = any(stretch.dashes for stretch in parts[k])
         if ragged[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
             continue
-        drawn = _extended(_line_pieces(parts[k]), parts[k], painted, partial(strands.near, level, k), line)
-        selected.append(SelectedLine(line, bool(double[k]), drawn))
+
+        def painted_beside(first, last, k=k):
+            near = strands.between(first, last)
+            return spans[near[(owner[near] != k) & (np.abs(level[owner[near]] - level[k]) <= SELECTION.max_neighbour_offset)]]
+
+        selected.append(SelectedLine(line, bool(double[k]), _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)))
     return selected
-
-
-class _StrandsBeside:
-    """Lookup of the strands of lines by station."""
-
-    def __init__(self, lines):
-        self.spans = np.array([(strand.first, strand.last) for line in lines for strand in line.strands]).reshape(-1, 2)
-        self.owner = np.repeat(np.arange(len(lines)), [len(line.strands) for line in lines])
-        self.lookup = StretchLookup(*self.spans.T)
-
-    def near(self, level, k, first, last):
-        """(M, 2) stations between which the lines beside line k are painted, of what is painted between two stations."""
-        strands = self.lookup.between(first, last)
-        owners = self.owner[strands]
-        return self.spans[strands[(owners != k) & (np.abs(level[owners] - level[k]) <= SELECTION.max_neighbour_offset)]]
-
-
-def _level(line, trend):
-    s, d, *_ = line.places()
-    return median(d - trend.at(s))
 
 
 def _beside(lines, beside, trend, longest_dash):
@@ -94,7 +79,7 @@ def _beside(lines, beside, trend, longest_dash):
     ragged, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
     tracks = []
     for line in lines:
-        s, d, *_ = line.places()
+        s, d, *_ = line.places
         cell = np.floor(s / 0.5).astype(np.int64)
         cells, first = np.unique(cell, return_index=True)
         tracks.append((cells, (d - trend.at(s))[first]))
@@ -110,7 +95,9 @@ def _beside(lines, beside, trend, longest_dash):
             share = len(a) / len(tracks[k][0])
             if spacing <= LINKS.double_line_spacing[1] and share > SELECTION.min_shared_paint:
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
-                min_paint = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * _painted_there(lines[j], lines[k]))
+                beside_it = [strand for strand in lines[j].strands_between(lines[k].first, lines[k].last)
+                             if strand.last > lines[k].first and strand.first < lines[k].last]
+                min_paint = max(SELECTION.min_twin_paint, SELECTION.min_shared_paint * sum(strand.length for strand in beside_it))
                 twin = spacing >= LINKS.double_line_spacing[0] and lines[k].painted >= min_paint
                 if not twin and lines[k].painted < SELECTION.max_ragged_share * lines[j].painted and lines[k].painted < longest_dash:
                     ragged[k] = True
@@ -128,29 +115,15 @@ def _shared(one, other):
     return a + windows[0].start, b + windows[1].start
 
 
-def _painted_there(line, other):
-    """Metres of paint of those strands of a line that run beside another."""
-    return sum(strand.length for strand in line.strands_between(other.first, other.last) if strand.last > other.first and strand.first < other.last)
-
-
-class _Bars:
-    """Bars of hatched areas, (K, 4) as `hatching_bars` gives them, by the station of their middle."""
-
-    def __init__(self, hatched):
-        middle = hatched[:, :2].mean(axis=1)
-        order = np.argsort(middle, kind="stable")
-        self.middle, (self.low, self.high) = middle[order], hatched[order, 2:].T
-
-
 def _frames_hatching(line, bars):
-    """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
-    inside = slice(*np.searchsorted(bars.middle, [line.first, line.last]))
-    middle = bars.middle[inside]
+    """Whether bars, (K, 4) by the station of their middle, end at a line along most of it; an edge line beside a hatched area goes on after it."""
+    middle = bars[:, :2].mean(axis=1)
+    inside = slice(*np.searchsorted(middle, [line.first, line.last]))
+    middle, sides = middle[inside], bars[inside, 2:]
     if len(middle) < SELECTION.min_bars:
         return False
-    s, d, *_ = line.places()
-    offsets = np.interp(middle, s, d)
-    ends = np.minimum(np.abs(bars.low[inside] - offsets), np.abs(bars.high[inside] - offsets)) < SELECTION.max_bar_end_offset
+    s, d, *_ = line.places
+    ends = np.abs(sides - np.interp(middle, s, d)[:, None]).min(axis=1) < SELECTION.max_bar_end_offset
     touching = middle[ends & (middle > line.first) & (middle < line.last)]
     if len(touching) < SELECTION.min_bars:
         return False
@@ -208,14 +181,10 @@ class Stretch:
 
 def _painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
-    spans = [span for strand in line.strands for span in _painted(strand)]
-    intervals = [list(spans[0])]
-    for first, last in spans[1:]:
-        if first - intervals[-1][1] < SELECTION.max_worn_hole:
-            intervals[-1][1] = max(intervals[-1][1], last)
-        else:
-            intervals.append([first, last])
-    return np.array(intervals)
+    first, last = np.array([span for strand in line.strands for span in _painted(strand)]).T
+    last = np.maximum.accumulate(last)
+    holes = first[1:] - last[:-1] >= SELECTION.max_worn_hole
+    return np.column_stack([first[np.r_[True, holes]], last[np.r_[holes, True]]])
 
 
 def _painted(strand):
@@ -339,10 +308,8 @@ def _line_pieces(parts: list[Stretch]) -> list[_LinePiece]:
                                      previous.pattern if previous.dashes else part.pattern))
         spans = part.intervals
         for j, (first, last) in enumerate(spans):
-            if j and first - spans[j - 1][1] > gap:
-                pieces.append(_LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
-            elif j:
-                pieces.append(_LinePiece(spans[j - 1][1], first, "measured", part.pattern))
+            if j:
+                pieces.append(_LinePiece(spans[j - 1][1], first, "bridged" if first - spans[j - 1][1] > gap else "measured", part.pattern))
             pieces.append(_LinePiece(first, last, "measured", part.pattern))
     return merged_pieces(pieces)
 

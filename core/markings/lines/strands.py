@@ -61,14 +61,9 @@ class LinkedLine:
         return sum(strand.length for strand in self.strands)
 
     @cached_property
-    def middle(self) -> float:
-        """Metres across, the median offset of all places."""
-        return median(self._places[1])
-
-    @cached_property
     def by_station(self) -> tuple[np.ndarray, np.ndarray]:
         """s, d of all places in order of station."""
-        s, d, *_ = self._places
+        s, d, *_ = self.places
         order = np.argsort(s, kind="stable")
         return s[order], d[order]
 
@@ -93,23 +88,17 @@ class LinkedLine:
         inside = slice(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))
         return s[inside], d[inside]
 
-    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    @cached_property
+    def places(self) -> tuple[np.ndarray, ...]:
         """s, d, z, weight of all places."""
-        return self._places
-
-    def end_places(self, at_start: bool) -> tuple[np.ndarray, np.ndarray]:
-        """s, d of the places within LEVEL_REACH of the first or the last point, the outermost place at least."""
-        return self._end_places[at_start]
-
-    @cached_property
-    def _end_places(self):
-        s, d, *_ = self._places
-        distances = s.max() - s, s - s.min()
-        return [(s[at_end], d[at_end]) for at_end in (a <= STRANDS.level_reach for a in distances)]
-
-    @cached_property
-    def _places(self):
         return tuple(np.concatenate([getattr(strand, name) for strand in self.strands]) for name in ("s", "d", "z", "weight"))
+
+    @cached_property
+    def end_places(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """s, d of the places within `level_reach` of the last, and of the first point, the outermost place at least."""
+        s, d, *_ = self.places
+        at_end, at_start = s.max() - s <= STRANDS.level_reach, s - s.min() <= STRANDS.level_reach
+        return (s[at_end], d[at_end]), (s[at_start], d[at_start])
 
 
 def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
@@ -199,8 +188,6 @@ def _runs(bins, across, spacing):
     seen = (bins[after] == bins[before]) & (across[after] - across[before] > unseen)
     lasting = _lasting(bins[after], (across[after] + across[before]) / 2, seen)
     for _ in range(8):
-        if len(starts) < 2:
-            break
         last = np.r_[starts[1:], len(bins)] - 1
         joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= STRANDS.max_worn_line_width_units)
         joins &= ~lasting
@@ -371,12 +358,10 @@ def painted_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
 
     `records` : N points with `cluster` and `spacing`; `rank` : (N,) class of each as `line_paint` gives it.
     """
-    if not len(records):
-        return []
     cluster = records["cluster"]
     # most points of the marking, which is a line
     apart = (records["spacing"] >= STRANDS.few_tracks * 1e3) & (rank < len(LINE_KINDS))
-    sparse = (2 * np.bincount(cluster[apart], minlength=int(cluster.max()) + 1) > np.bincount(cluster))[cluster]
+    sparse = (2 * np.bincount(cluster[apart], minlength=int(cluster.max(initial=-1)) + 1) > np.bincount(cluster))[cluster]
     few = np.flatnonzero(sparse)
     check_cancelled()
     few = few[np.lexsort((records["s"][few], cluster[few]))]

@@ -63,8 +63,8 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
 
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
-                      covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[tuple[str, str]]:
-    """Class and use of every cluster of one road: class "" for what is not paint, use "keep" for lines, else "other".
+                      covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[str]:
+    """Class of every cluster of one road, "" for what is not paint.
 
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
@@ -76,7 +76,10 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     clearance = np.asarray(half_widths) - np.abs(column["offset"])
     curb = np.array([_curb(shape, r) for shape, r in zip(shapes, clearance)])
     zigzag = np.array([shape.legs > 0 for shape in shapes])
-    line = _is_line(column, settings) & ~curb & ~zigzag
+    # of a line far off each scan line may show one point only, and no width
+    broad = (column["width"] >= settings.min_width) | (column["length"] >= CLASSES.min_solid_length)
+    line = column["along"] & broad & (column["width"] <= settings.max_width) & (column["length"] >= settings.min_length) \
+        & (column["elongation"] >= settings.min_elongation) & ~curb & ~zigzag
     line |= _dashes_in_rows(shapes, column, clearance, settings)
     line &= ~zigzag
     outside = _beyond_the_edge_line(column, line, clearance)
@@ -85,13 +88,12 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     refused = outside | covered_feet | curb
     kinds = [_kind(*of_one) for of_one in zip(shapes, clearance, line, zigzag, np.broadcast_to(blocks, len(shapes)), doubles, covered_feet, refused,
                                               repeat(settings.margin))]
-    classes = [(kind, "keep" if kind in LINE_KINDS else "other") for kind in kinds]
-    for k in _outlines(column, [kind for kind, _ in classes]):
-        classes[k] = "hatch", "other"
-    for k in _single_bars(column, [kind for kind, _ in classes]):
+    for k in _outlines(column, kinds):
+        kinds[k] = "hatch"
+    for k in _single_bars(column, kinds):
         corner = clearance[k] < CLASSES.curb_corner_clearance and shapes[k].length < CLASSES.max_curb_corner_length
-        classes[k] = NOT_PAINT if corner else "symbol", "other"
-    return classes
+        kinds[k] = NOT_PAINT if corner else "symbol"
+    return kinds
 
 
 def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, margin):
@@ -104,20 +106,17 @@ def _kind(shape, clearance, line, zigzag, block, double, covered_feet, refused, 
         return NOT_PAINT
     if block:
         return "give_way"
-    return _line_kind(shape, clearance, double) if line else _other_kind(shape)
+    if not line:
+        return _other_kind(shape)
+    if clearance < CLASSES.lane_clearance and not double:
+        return "edge"
+    return "centre" if double or shape.length > CLASSES.min_solid_length else "lane"
 
 
 def columns_of(shapes: Sequence[Shape]) -> dict[str, np.ndarray]:
     """dict of (N,) arrays, what the Shapes have."""
     return {name: np.array([getattr(shape, name) for shape in shapes])
             for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
-
-
-def _is_line(column, settings):
-    # of a line far off each scan line may show one point only, and no width
-    width, thin = column["width"], column["length"] >= CLASSES.min_solid_length
-    return column["along"] & ((width >= settings.min_width) | thin) & (width <= settings.max_width) \
-        & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
 
 
 def _dashes_in_rows(shapes, column, clearance, settings):
@@ -186,12 +185,6 @@ def _single_bars(column, kinds):
             gap = np.maximum(gap, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
         single[a[(a != b) & (gap < CLASSES.max_hatching_pitch)]] = False
     return rows[single]
-
-
-def _line_kind(shape, clearance, double):
-    if clearance < CLASSES.lane_clearance and not double:
-        return "edge"
-    return "centre" if double or shape.length > CLASSES.min_solid_length else "lane"
 
 
 def _speck(shape):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,12 +16,13 @@ from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.in_step import Asked, Work, in_step
-from ...execution.phase import THREADS, Executor, Items, NoSource
+from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.road_points import RoadPoints
+from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
@@ -29,7 +31,6 @@ from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import (
     Comb,
-    Crossing,
     Stripe,
     blocks_of_strip,
     comb_of_window,
@@ -43,6 +44,8 @@ from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import are_compound, join_fragments, parts_of_compound
 
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
+# of a point of paint that clustering looks at
+PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group road points on paint into markings with class, size and outline.
 
-    executor : who links points, looks for crossings, divides compound clusters and measures clusters
+    executor : who links points, looks for crossings and divides compound clusters
 
     Returns
         markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
@@ -70,15 +73,18 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()
     lines = [frame.road(road) for road in roads]
-    connected = connected_points(marking_points, settings.distance, progress.part(0.0, 0.1), executor)
-    counts = [len(records) for records, _ in connected]
-    works = [_apart(*of_road, line, settings) for of_road, line in zip(connected, lines)]
+    executor = marking_points.store.readers(executor)
+    paint = [columns_of_roads(marking_points.store, [road], PAINT_COLUMNS) for road in roads]
+    connected, *striped = in_step([connected_points(marking_points, settings.distance), *map(_striped, paint, lines)], executor,
+                                  progress.part(0.0, 0.4))
+    counts = [len(labels) for labels in connected]
+    works = [_apart(*of_road, settings) for of_road in zip(paint, connected, striped)]
     # the labels of the points of all roads are in memory as long as anybody has them
-    del connected
-    apart = in_step(works, executor, PLACE, progress.part(0.1, 0.7))
+    del connected, striped
+    apart = in_step(works, executor, progress.part(0.4, 0.7))
     blocks = _blocks_of_all([pieces for _, pieces in apart])
     named = in_step([_markings(stripes, pieces, of_road, k, lines, settings, marking_points.has_corrected)
-                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, PLACE, progress.part(0.7, 1.0))
+                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, progress.part(0.7, 1.0))
     rows, polygons = [], []
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
@@ -107,69 +113,84 @@ class _Pieces(NamedTuple):
     shapes: list[Shape]
 
 
-def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSettings) -> Work:
-    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
-
-    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
-    """
+def _striped(records: Columns, road: Road) -> Work:
+    """The work on one road that finds the stripes of its crossings, [Stripe], and (N,) int32 the number of the stripe of each point, else -1."""
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
     places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
     del cells, station
     spots, windows = spots_by_place(places)
-    crossings = crossings_of(spots, windows, (yield combs_asked(places, windows, 0.35)))
+    crossings = crossings_of(spots, windows, (yield asked(combs_of_windows, partial(_at, (places,)), windows, 0.7)))
     del spots, windows
-    stripes = stripes_apart(places, way, crossings, (yield _stripes_asked(places, way, crossings, 0.45)))
+    stripes = stripes_apart(places, way, crossings, (yield asked(
+        _zebra_stripes, partial(_at, (places, way)), [members for members, _ in crossings], 1.0, [comb for _, comb in crossings])))
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
-    of_point = stripe_of[member]
-    del places, way, member
-    striped, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
+    return stripes, stripe_of[member]
+
+
+def _apart(records: Columns, labels: np.ndarray, striped: tuple[list[Stripe], np.ndarray], settings: ClusterSettings) -> Work:
+    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
+
+    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
+
+    labels, striped : as of `connected_points` and `_striped`
+    """
+    stripes, of_point = striped
+    members, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
     paint, labels = records.take(rows), labels[rows]
-    split, pieces = yield from _divided(paint, _with_rows_divided(paint, labels))
+    split, pieces, of_stripes = yield from _divided(paint, _with_rows_divided(paint, labels), records, [of_stripe for _, of_stripe in members])
     joins = join_fragments(pieces, settings.classes.max_width)
     order, starts, _ = _by_cluster(split, 1)
-    again, starts, labels = _by_cluster(_relabelled(len(paint), starts, joins), settings.min_points)
+    # points of no cluster get labels of their own
+    labels = np.r_[np.repeat(joins, np.diff(starts)), len(joins) + np.arange(len(paint) - starts[-1])]
+    again, starts, labels = _by_cluster(labels, settings.min_points)
     order = rows[order[again]]
     clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-    unjoined = _alone(pieces, joins)
-    # clusters that were joined, then stripes
-    measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
-    shapes = iter((yield shapes_asked(records, [*measured, *(of_stripe for _, of_stripe in striped)], 1.0)))
-    of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
-    return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
+    count = np.bincount(joins, minlength=1)
+    unjoined = {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
+    columns = _columns_at(records, MEASURED, order)
+    shapes = [unjoined[label] if label in unjoined else measure(*(column[slice(*ends)] for column in columns))
+              for label, ends in zip(labels.tolist(), bounds)]
+    return _stripe_markings(records, stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
 
 
-def _divided(paint, labels):
-    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order."""
+def _divided(paint, labels, records, stripes):
+    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order.
+
+    Also the Shape of each of the stripes, rows of the records.
+    """
     order = order_by(labels)
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     columns = tuple(paint[name].take(order) for name in MEASURED)
-    bounds = np.r_[starts, len(order)]
-    divided = yield pieces_asked(columns, bounds, are_compound(*columns[:2], starts), 0.9)
+    compound = [*are_compound(*columns[:2], starts).tolist(), *(False for _ in stripes)]
+    ends = np.r_[starts, len(order) + np.cumsum([0, *map(len, stripes)])]
+    clusters = [np.arange(*pair) for pair in zip(ends, ends[1:])]
+    columns = tuple(map(np.append, columns, _columns_at(records, MEASURED, np.concatenate([np.empty(0, np.intp), *stripes]))))
+    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 1.0, compound)
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     alone, of_parts = [], []
-    for first, end, (parts, shapes) in zip(bounds[:-1].tolist(), bounds[1:].tolist(), divided):
+    for rows, (parts, shapes) in zip(clusters[:len(starts)], divided):
         if parts is None:
             alone += shapes
         else:
-            labels[order[first:end]] = following + parts
+            labels[order[rows]] = following + parts
             following += len(shapes)
             of_parts += shapes
-    return labels, alone + of_parts
+    return labels, alone + of_parts, [shape for _, (shape,) in divided[len(starts):]]
 
 
 def _stripe_markings(records, stripes, striped, shapes):
     """[_Marking] of stripes of crossings, with points of each and its Shape."""
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)])).load_all()
+    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)]))
     markings, first = [], 0
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        markings.append(_Marking(painted[first:first + len(rows)], rows, replace(shape, length=length, width=width), "zebra", "other",
-                                 shapely.Polygon(corners)))
+        shape = replace(shape, length=length, width=width)
+        markings.append(_Marking(painted[first:first + len(rows)], rows, shape, "zebra", shapely.Polygon(corners)))
         first += len(rows)
     return markings
 
@@ -194,10 +215,8 @@ def _rectangle(records, bounds):
 
 def _with_rows_divided(records, labels):
     """Labels of clusters, rows of the blocks of give-way lines divided into these."""
-    if not len(labels):
-        return labels
     order = order_by(labels)
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
+    starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     along, across = ((np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts)) * COORDINATE_SCALE
                      for values in (records[name].take(order) for name in "sd"))
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
@@ -226,28 +245,30 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
     possible = clear & (np.array(covered) <= CLASSES.min_covered_share)
     if has_corrected:
         bright = relative_contrast(Points(records).value, records["s"], np.array([0, *(b for _, b in bounds)]))
-        pale = [too_pale(share, kind) for share, (kind, _) in zip(bright.tolist(), kinds)]
+        pale = [too_pale(share, kind) for share, kind in zip(bright.tolist(), kinds)]
         possible &= ~np.array(pale, bool)
-        kinds = [(NOT_PAINT, "other") if faint else kind for faint, kind in zip(pale, kinds)]
-    classes: list[tuple[tuple[int, ...], str, str]] = [((k,), *kind) for k, kind in enumerate(kinds)]
-    for members, kind in (yield from painted_figures(shapes, [kind for kind, _ in kinds], possible,
-                                                     lambda group: _cells_together(records, bounds, group))):
+        kinds = [NOT_PAINT if faint else kind for faint, kind in zip(pale, kinds)]
+    classes: list[tuple[tuple[int, ...], str]] = [((k,), kind) for k, kind in enumerate(kinds)]
+    for members, kind in (yield from painted_figures(shapes, kinds, possible, lambda group: _cells_together(records, bounds, group))):
         for k in members:
-            classes[k] = ((), NOT_PAINT, "other")
-        classes[members[0]] = (members, kind, "other")
+            classes[k] = ((), NOT_PAINT)
+        classes[members[0]] = (members, kind)
     # the columns that told kinds of markings are not used any more
     markings, records = [*stripes], records.unread()
-    for members, kind, use in classes:
+    for members, kind in classes:
         if kind != NOT_PAINT:
             check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
-            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind, use))
+            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    outlines = iter((yield _outlines_asked(pieces.paint, [marking for marking in markings if marking.outline is None], number, roads)))
+    undrawn = [marking for marking in markings if marking.outline is None]
+    outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
+                                 [marking.rows for marking in undrawn], 1.0,
+                                 [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
     drawn = [next(outlines) if marking.outline is None
              else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
-    return markings, drawn, sum(kind == NOT_PAINT for members, kind, _ in classes if members)
+    return markings, drawn, sum(kind == NOT_PAINT for members, kind in classes if members)
 
 
 class _Marking(NamedTuple):
@@ -257,7 +278,6 @@ class _Marking(NamedTuple):
     rows: np.ndarray
     shape: Shape
     kind: str
-    use: str
     outline: shapely.Polygon | None = None
 
 
@@ -284,39 +304,24 @@ def _cells_together(records, bounds, members):
     return cells, reach
 
 
-def _alone(pieces, joins):
-    """The pieces that were joined to no other, by the number of their marking."""
-    count = np.bincount(joins, minlength=1)
-    return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
-
-
-def _relabelled(count, starts, number):
-    """Label of each of so many records after joining; records of no cluster get labels of their own."""
-    labels = np.repeat(number, np.diff(starts))
-    return np.r_[labels, len(number) + np.arange(count - len(labels))]
-
-
 def _by_cluster(labels, fewest):
     """Points of clusters large enough, one cluster after the other; those of the rest at the end.
 
     Returns their order, the bounds of the clusters in it (one more than there are clusters), and the label of each.
     """
-    if not len(labels):
-        return np.empty(0, np.intp), np.zeros(1, np.int64), np.empty(0, np.int32)
     labels = labels.astype(np.int32, copy=False)
     large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)
     labels = labels[order[:np.count_nonzero(large)]]
-    starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
+    starts = np.flatnonzero(np.diff(labels, prepend=-1))
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
 def _row(marking, number, line, frame):
-    """The fields of one marking."""
     shape = marking.shape
-    return dict(road=int(line.number), cluster=number, use=marking.use, station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
-                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(marking.records, line, frame),
-                points=shape.points, **{"class": marking.kind})
+    return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
+                offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,
+                scan_m=_scanning_distance(marking.records, line, frame), points=shape.points, **{"class": marking.kind})
 
 
 def _scanning_distance(records, line, frame):
@@ -337,7 +342,6 @@ def _scanning_distance(records, line, frame):
 
 MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
 DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
-PLACE = "the markings of all roads"   # names the stretch of road in messages
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 
 
@@ -367,16 +371,10 @@ def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np
 
 def _pieces_of_cluster(s, d, spacing, divisible):
     """What `pieces_of_clusters` gives of one."""
-    parts, count = parts_of_compound(s, d, spacing) if divisible else (None, 1)
-    if count == 1:
+    parts = parts_of_compound(s, d, spacing) if divisible else None
+    if parts is None or not parts.any():
         return None, [measure(s, d, spacing)]
-    _, parts = np.unique(parts, return_inverse=True)
     return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
-
-
-def shapes_of_clusters(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]) -> list[Shape]:
-    """The phase that measures clusters; item : columns MEASURED of the points, and the bounds of the clusters."""
-    return [measure(*columns) for columns in _clusters(item)]
 
 
 def outlines_of_markings(source: NoSource, item: tuple[Any, ...], roads: Sequence[Road]) -> tuple[np.ndarray, ...]:
@@ -399,48 +397,22 @@ def _clusters(item):
         yield [column[first:end] for column in columns]
 
 
-def combs_asked(places: np.ndarray, windows: Sequence[np.ndarray], until: float) -> Asked:
-    """Asks for the Comb of each window, None where it has no stripes; places : (N, 2) m, windows : rows of the spots of each."""
-    rows = np.concatenate([np.empty(0, np.int32), *windows])
-    return _asked(combs_of_windows, lambda a, b: (places[rows[a:b]],), np.cumsum([0, *map(len, windows)]), until)
+def asked(function: Callable[..., Any], columns: Callable[[np.ndarray], tuple[Any, ...]], rows: Sequence[np.ndarray], until: float,
+          looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (), read: Callable[[Any], list[Any]] = list) -> Asked:
+    """Asks a phase about clusters, some in each item.
 
-
-def _stripes_asked(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], until: float) -> Asked:
-    """Asks for the stripes of each crossing, their spots by number among those of the crossing; (N,) radians `way` : of the road at each place."""
-    rows = np.concatenate([np.empty(0, np.intp), *(spots for spots, _ in crossings)])
-    return _asked(_zebra_stripes, lambda a, b: (places[rows[a:b]], way[rows[a:b]]), np.cumsum([0, *(len(spots) for spots, _ in crossings)]), until,
-                  [comb for _, comb in crossings])
-
-
-def pieces_asked(columns: Sequence[np.ndarray], bounds: np.ndarray, compound: np.ndarray, until: float) -> Asked:
-    """Asks for what `pieces_of_clusters` gives of each cluster; bounds : of the clusters in the columns MEASURED."""
-    return _asked(pieces_of_clusters, lambda a, b: tuple(column[a:b] for column in columns), bounds, until, compound.tolist())
-
-
-def shapes_asked(records: Columns, rows: Sequence[np.ndarray], until: float) -> Asked:
-    """Asks for the Shape of each cluster; rows : in the records, of each."""
-    together = np.concatenate([np.empty(0, np.intp), *rows])
-    return _asked(shapes_of_clusters, lambda a, b: _columns_at(records, together[a:b], MEASURED), np.cumsum([0, *map(len, rows)]), until)
-
-
-def _outlines_asked(paint: Columns, markings: Sequence[_Marking], number: int, roads: Sequence[Road]) -> Asked:
-    """Asks for [Polygon] of each marking, of `drawn_outline`, on the road of that number among all."""
-    together = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)])
-    return _asked(outlines_of_markings, lambda a, b: (number, *_columns_at(paint, together[a:b], DRAWN)),
-                  np.cumsum([0, *(len(marking.rows) for marking in markings)]), 1.0,
-                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in markings], (list(roads),), _polygons)
-
-
-def _asked(function: Callable[..., Any], columns: Callable[[int, int], tuple[Any, ...]], bounds: np.ndarray, until: float,
-           looks: Sequence[Any] | None = None, arguments: tuple[Any, ...] = (), read: Callable[[Any], list[Any]] = list) -> Asked:
-    """Asks a phase about clusters, some in each item; `columns` gives those of the points, cluster after cluster, from a row to before another."""
+    columns : gives those that the phase takes of points at some rows; rows : of the points of each cluster
+    looks : what else the phase takes of each cluster; until, arguments, read : as of Asked
+    """
+    together, bounds = np.concatenate([np.empty(0, np.intp), *rows]), np.cumsum([0, *map(len, rows)])
     cuts = _lasting_cuts(bounds, TASK_POINTS).tolist()
 
     def item(k):
         a, b = cuts[k:k + 2]
-        return *columns(bounds[a], bounds[b]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
+        return *columns(together[bounds[a]:bounds[b]]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-    return Asked(function, Items(len(cuts) - 1 if len(bounds) > 1 else 0, item), until, arguments, read)
+    phase = Phase(function, NoSource(), arguments, lambda item: "the markings of all roads", together=EXECUTION.items_per_task)
+    return Asked(phase, Items(len(cuts) - 1, item), until, read=read)
 
 
 def _lasting_cuts(bounds, points):
@@ -455,8 +427,12 @@ def _lasting_cuts(bounds, points):
     return np.unique(np.r_[0, np.flatnonzero(mixed * float(points) < size[1:] * 2.0**32) + 1, len(bounds) - 1])
 
 
-def _columns_at(records, rows, names):
-    """Some columns of some rows."""
+def _at(columns, rows):
+    return tuple(column[rows] for column in columns)
+
+
+def _columns_at(records, names, rows):
+    """Some columns of some rows, which are read for it."""
     selected = records.take(rows)
     return tuple(selected[name] for name in names)
 

@@ -16,7 +16,8 @@ import numpy as np
 from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.in_step import Asked, Work
-from ...execution.phase import NoSource
+from ...execution.phase import NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
 from ..weights import FIGURES
@@ -45,10 +46,11 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
+    phase = Phase(figure_of_cells, NoSource(), (), lambda item: "the figures of all roads", together=EXECUTION.items_per_task)
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         batch = groups[first:first + GROUPS_AT_ONCE]
         cells = [cells_of(members) for group in batch for members in group]
-        kind_of_group = iter((yield Asked(figure_of_cells, cells, 0.5 * (first + len(batch)) / len(groups), read=lambda kind: [kind])))
+        kind_of_group = iter((yield Asked(phase, cells, 0.5 * (first + len(batch)) / len(groups))))
         for group in batch:
             used: set[int] = set()
             for members, kind in [(members, next(kind_of_group)) for members in group]:
@@ -97,9 +99,9 @@ def figure_of_cells(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> st
     image = _PaintImage.of(mask, first * CELL_SIZE, CELL_SIZE)
     best, kind = 0.0, ""
     for symbol in SYMBOLS:
-        match, (min_whole, third) = agreement(image, symbol), getattr(FIGURES, f"least_of_{symbol.kind}")
-        if match is not None and match.whole >= min_whole and match.worst_third >= third and match.whole > best:
-            best, kind = match.whole, symbol.kind
+        (whole, third), (least, least_third) = agreement(image, symbol), getattr(FIGURES, f"least_of_{symbol.kind}")
+        if whole >= least and third >= least_third and whole > best:
+            best, kind = whole, symbol.kind
     return kind
 
 
@@ -127,24 +129,6 @@ class _PaintImage(NamedTuple):
         places = (np.argwhere(mask) + 0.5) * size + corner
         right, up = ((places @ way).std(axis=0) for way in _axes(TURNS))
         return cls(image, corner - FIGURES.rim * size, size, places, right, up, float((image * image).sum()))
-
-
-class _Pose(NamedTuple):
-    """Where a figure lies: radians from the first axis of the paint to its right, its middle, m, and width and height of a unit of it, m."""
-
-    turn: float
-    x: float
-    y: float
-    width: float
-    height: float
-
-
-class Agreement(NamedTuple):
-    """How well paint agrees with a figure: the correlation of the whole, -1 to 1, that of the third that agrees least, and the pose."""
-
-    whole: float
-    worst_third: float
-    pose: _Pose
 
 
 class _Figure(NamedTuple):
@@ -186,8 +170,11 @@ def _normed(image):
     return image / max(float(np.linalg.norm(image)), 1e-6)
 
 
-def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> Agreement | None:
-    """The best agreement of paint with a figure; None where it has not the figure's size in any direction, or is nothing like it."""
+def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> tuple[float, float]:
+    """How well paint agrees with a figure where it does best: correlation of the whole, -1 to 1, and of the third that agrees least.
+
+    Both are -1 where the paint has not the figure's size in any direction, or is nothing like it.
+    """
     best = None
     for figure in figures_of(symbol):
         poses = _allowed(_poses(cells, figure), figure, symbol)
@@ -200,16 +187,18 @@ def agreement(cells: _PaintImage, symbol: PaintedSymbol) -> Agreement | None:
             if best is None or refined[0] > best[0]:
                 best = (*refined, figure)
     if best is None:
-        return None
+        return -1.0, -1.0
     whole, pose, figure = best
     paint = _seen(cells, figure, pose[None])[0]
     columns = np.array_split(np.arange(figure.image.shape[1]), 3)
-    return Agreement(float(whole), min(float((_normed(figure.image[:, third]) * _normed(paint[:, third])).sum()) for third in columns),
-                     _Pose(*pose.tolist()))
+    return float(whole), min(float((_normed(figure.image[:, third]) * _normed(paint[:, third])).sum()) for third in columns)
 
 
 def _poses(cells: _PaintImage, figure: _Figure) -> np.ndarray:
-    """(P, 5) as _Pose, in every direction, in which the paint is spread as the figure's is."""
+    """(P, 5) where the figure lies, in every direction, if the paint is spread as the figure's is.
+
+    Radians from the first axis of the paint to its right, its middle, m, and width and height of a unit of it, m.
+    """
     right, up = _axes(TURNS)
     scale = np.stack([cells.spread_right, cells.spread_up]) / figure.spread[:, None]
     shift = (figure.middle - figure.size / 2)[:, None] * scale

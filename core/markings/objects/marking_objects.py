@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -85,10 +85,6 @@ class MarkingObjects(LayerRows):
     extent: np.ndarray   # (M, 4) metres, first and last station, least and greatest offset of the outline; NaN off the road
     outlines: Outlines   # Outlines of the M markings
     crs: str = ""   # WKT, "" where unknown
-
-    def with_kinds(self, kind: np.ndarray) -> MarkingObjects:
-        """The same markings with other classes, (M,) str objects."""
-        return replace(self, kind=kind)
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(M,) polygons with Z in map coordinates."""

@@ -106,11 +106,6 @@ def _about(spots, rows, heading):
     return in_box[((turned >= low) & (turned <= high)).all(axis=1)]
 
 
-def comb_of_window(spots: np.ndarray) -> Comb | None:
-    """`find_comb` of the (N, 2) spots of a window that holds more than one line, which most do not."""
-    return find_comb(spots) if _least_spread(spots) >= STRIPES.least_spread else None
-
-
 def _least_spread(places):
     """Standard deviation of places in the direction where it is least, m."""
     deviations = places - places.sum(axis=0) / len(places)
@@ -118,14 +113,10 @@ def _least_spread(places):
     return float(np.sqrt(max((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)))
 
 
-def _mean_phase(across, pitches):
-    """(H, P) complex, the mean phase of spots for every pitch; across : (N, H) m, where they lie across each direction."""
-    turn = (2 * np.pi / pitches)[:, None, None] * across
-    return (np.cos(turn).sum(axis=1) / len(across) + 1j * (np.sin(turn).sum(axis=1) / len(across))).T
-
-
-def find_comb(places: np.ndarray) -> Comb | None:
-    """The direction and pitch in which spots, (N, 2) m, repeat as stripes side by side do; None where they are no three stripes side by side."""
+def comb_of_window(places: np.ndarray) -> Comb | None:
+    """The direction and pitch in which the spots of a window, (N, 2) m, repeat as stripes do; None where they are no three stripes side by side."""
+    if _least_spread(places) < STRIPES.least_spread:
+        return None   # most windows hold one line
     middle = places.mean(axis=0)
     centred = (places - middle)[::max(len(places) // STRIPES.most_spots, 1)]
     phase = _phases(centred)
@@ -155,7 +146,8 @@ def _refined(spots, middle, heading, pitch, steps=1.0):
     across = spots @ np.array([-np.sin(headings), np.cos(headings)])
     clear = _clear(across, pitches)
     headings, pitches = headings[clear.any(axis=1)], pitches[clear.any(axis=0)]
-    phase = _mean_phase(across[:, clear.any(axis=1)], pitches)
+    turn = (2 * np.pi / pitches)[:, None, None] * across[:, clear.any(axis=1)]
+    phase = (np.cos(turn).sum(axis=1) / len(across) + 1j * (np.sin(turn).sum(axis=1) / len(across))).T
     a, b = np.unravel_index(np.abs(phase).argmax(), phase.shape)
     return Comb(float(headings[a]), float(pitches[b]), float(np.angle(phase[a, b]) / (2 * np.pi) * pitches[b]), middle,
                 float(np.abs(phase[a, b])))
@@ -546,8 +538,6 @@ def _pairs_of_squares(sides, middle):
     """(P, 2) squares near each other, either way, (P, 2) m their sizes, and (P,) m between their middles."""
     square = np.flatnonzero((sides.min(axis=1, initial=np.inf) >= ROWS.block_size[0]) & (sides.max(axis=1, initial=0.0) <= ROWS.block_size[1])
                             & (sides.max(axis=1, initial=0.0) <= ROWS.max_block_ratio * np.maximum(sides.min(axis=1, initial=np.inf), 1e-3)))
-    if len(square) < 2:
-        return np.empty((0, 2), np.int64), np.empty((0, 2)), np.empty(0)
     pairs = square[cKDTree(middle[square]).query_pairs(ROWS.block_spacing[1] * ROWS.block_size[1], output_type="ndarray")].reshape(-1, 2)
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]

@@ -15,7 +15,7 @@ from ...curves.robust import median, percentiles, row_medians
 from ...lazy import cv2
 from ...survey.frame.road import Road
 from ...survey.store.records import COORDINATE_SCALE
-from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
+from ..road_grid import CELL_SIZE, CELL_UNITS, closed_mask, fill_gaps, filled_between_tracks, occupied, track_reach
 from ..weights import SHAPES, ZIGZAG
 
 
@@ -47,17 +47,11 @@ class Shape:
         return self.length / max(self.width, 1e-3)
 
     @property
-    def station(self) -> float:
-        return (self.s0 + self.s1) / 2
-
-    @property
     def along(self) -> bool:
-        """Whether it runs along the road."""
         return abs(self.direction) <= SHAPES.max_angle_along
 
     @property
     def across(self) -> bool:
-        """Whether it runs across the road."""
         return abs(self.direction) > SHAPES.min_angle_across
 
 
@@ -75,7 +69,10 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         reach_of_cell[member] = reach
         mask, first = filled_between_tracks(cells, reach_of_cell)
         cells, apart = np.argwhere(mask) + first, median(spacing) * 1e-3
-    direction = _principal_direction(cells)
+    # of the principal axis of the cells
+    x, y = (cells - cells[0]).T.astype(float)
+    x, y = x - x.mean(), y - y.mean()
+    direction = float(0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum()))
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= SHAPES.max_angle_along and s1 - s0 > 2 * SHAPES.middle_line_step_units:
         length = (s1 - s0) * COORDINATE_SCALE
@@ -88,13 +85,14 @@ def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> 
         length = np.ptp(along) * COORDINATE_SCALE
         across = d * c - s * n
         begin = finish = median(d) * COORDINATE_SCALE
-    width = _full_width(across) * COORDINATE_SCALE
+    low, high = percentiles(across, ((100 - SHAPES.width_percent) / 2, (100 + SHAPES.width_percent) / 2))
+    width = (high - low) / (SHAPES.width_percent / 100) * COORDINATE_SCALE
     sides = float(length), width
     if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SHAPES.small_marking_size:
         sides = smallest_rectangle(cells)
-        closed = _closed(cells, SHAPES.scan_gaps_of_small)
+        closed = np.count_nonzero(closed_mask(cells, SHAPES.scan_gaps_of_small)[0])
     else:
-        closed = _closed(cells, SHAPES.scan_gaps_of_bars) if abs(direction) > SHAPES.min_angle_across else len(cells)
+        closed = np.count_nonzero(closed_mask(cells, SHAPES.scan_gaps_of_bars)[0]) if abs(direction) > SHAPES.min_angle_across else len(cells)
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), width, direction, area, len(s), float(begin), float(finish), closed_area,
@@ -105,16 +103,6 @@ def smallest_rectangle(cells: np.ndarray) -> tuple[float, float]:
     """Sides of the smallest rectangle about (K, 2) cells, m."""
     sides = cv2.minAreaRect(cells.astype(np.float32))[1]
     return float((sides[0] + 1.0) * CELL_SIZE), float((sides[1] + 1.0) * CELL_SIZE)
-
-
-def _closed(cells, gaps):
-    """How many cells there are when the gaps between scan lines are closed."""
-    low = cells.min(axis=0)
-    mask = np.zeros(cells.max(axis=0) - low + 1, bool)
-    mask[tuple((cells - low).T)] = True
-    for axis, limit in enumerate(gaps):
-        mask = fill_gaps(mask, limit, axis)
-    return int(mask.sum())
 
 
 def _stems(cells):
@@ -136,21 +124,6 @@ def _oblique(s, d):
         clear = len(along) >= SHAPES.min_end_points and np.ptp(along) >= SHAPES.min_end_units
         slopes.append(abs(float((along * across).sum() / (along * along).sum())) if clear else 0.0)
     return slopes[0], slopes[1]
-
-
-def _full_width(across: np.ndarray) -> float:
-    """Full width of evenly spread values from their 95 % range."""
-    low, high = percentiles(across, ((100 - SHAPES.width_percent) / 2, (100 + SHAPES.width_percent) / 2))
-    return (high - low) / (SHAPES.width_percent / 100)
-
-
-def _principal_direction(cells):
-    if len(cells) < 2:
-        return 0.0
-    x, y = (cells - cells[0]).T.astype(float)
-    x, y = x - x.mean(), y - y.mean()
-    angle = 0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
-    return float(angle)
 
 
 def middle_line(s: np.ndarray, d: np.ndarray, spacing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -330,12 +303,6 @@ def _cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
     return shape.simplify(SHAPES.outline_tolerance, preserve_topology=True)
 
 
-def parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons of an outline that are large enough to be drawn, from the road's start on."""
-    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= SHAPES.min_part_area]
-    return sorted(pieces, key=lambda piece: piece.bounds)
-
-
 def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road: Road) -> list[shapely.Polygon]:
     """The polygons of one marking in local coordinates, from the road's start on, as an even strip or cell by cell.
 
@@ -344,10 +311,11 @@ def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road
     s, d, x, y, z, spacing = columns
     drawn = band(s, d, shape) if strip else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
     points = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
-    return [to_local(part, road, points) for part in parts(drawn)]
+    large = [part for part in getattr(drawn, "geoms", [drawn]) if part.area >= SHAPES.min_part_area]
+    return [_to_local(part, road, points) for part in sorted(large, key=lambda part: part.bounds)]
 
 
-def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:
+def _to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:
     """A polygon in (s, d) in local coordinates, each vertex at the median height of the nearest of the cluster's `places`, (N, 3) m."""
     shape = shapely.segmentize(shape, SHAPES.outline_vertex_spacing)
     vertices = shapely.get_coordinates(shape)

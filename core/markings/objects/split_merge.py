@@ -15,7 +15,7 @@ from ...common.arrays import linked_groups, members_of, overlapping_pairs, stret
 from ...common.parallel import check_cancelled
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..road_grid import CELL_SIZE, CELL_UNITS, fill_gaps, filled_between_tracks, occupied, track_reach
+from ..road_grid import CELL_SIZE, CELL_UNITS, closed_mask, filled_between_tracks, occupied, track_reach
 from ..weights import CLASSES, COMPOUNDS
 from .classify import columns_of
 from .shape import Shape
@@ -28,8 +28,6 @@ def are_compound(s: np.ndarray, d: np.ndarray, starts: np.ndarray) -> np.ndarray
 
     s, d : (N,) int, units of 0.1 mm, of points one cluster after the other; starts : (K,) int, where each begins
     """
-    if not len(starts):
-        return np.zeros(0, bool)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (s, d)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
     return _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
@@ -41,37 +39,29 @@ def _of_several(length, breadth):
         | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_run_across)
 
 
-def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> tuple[np.ndarray, int]:
-    """The part of every point of one cluster, (N,) int from 0 on, and how many there are.
+def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> np.ndarray:
+    """The part of every point of one cluster, (N,) int from 0 on.
 
     `s`, `d` : (N,) int, units of 0.1 mm; `spacing` : (N,) int, mm between the tracks of the scan.
     """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
-    apart = np.zeros(len(cells))
-    apart[member] = spacing
-    parts, count = _parts(cells, apart)
-    return parts[member], count
-
-
-def _parts(cells, spacing):
-    """(K,) the part of every cell, numbered from 0, and how many parts there are; spacing : (K,) mm of the scan's tracks."""
-    reach = track_reach(spacing)
+    reach = np.zeros(len(cells))
+    reach[member] = track_reach(spacing)
     if not reach.any():
-        return _parts_of_filled(cells)
+        return np.unique(_parts(cells)[member], return_inverse=True)[1]
     mask, first = filled_between_tracks(cells, reach)
     filled = np.flatnonzero(mask)
-    parts, _ = _parts_of_filled(np.column_stack(np.divmod(filled, mask.shape[1])) + first)
+    parts = _parts(np.column_stack(np.divmod(filled, mask.shape[1])) + first)
     cell_index = np.ravel_multi_index(tuple((cells - first).T), mask.shape)
-    _, parts = np.unique(parts[np.searchsorted(filled, cell_index)], return_inverse=True)
-    return parts, int(parts.max()) + 1
+    return np.unique(parts[np.searchsorted(filled, cell_index)][member], return_inverse=True)[1]
 
 
-def _parts_of_filled(cells):
-    """`_parts` of cells without gaps between tracks of the scan, sorted along the road."""
+def _parts(cells):
+    """(K,) the part of every cell, numbered from 0; cells without gaps between tracks of the scan, sorted along the road."""
     size = CELL_UNITS * COORDINATE_SCALE
     even, width = even_strip(cells)
     if even.all() and width * size <= COMPOUNDS.max_width_alone:
-        return np.zeros(len(cells), np.int64), 1
+        return np.zeros(len(cells), np.int64)
     if not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
         return bar_with_lines(cells)
     parts, count = np.full(len(cells), -1), 0
@@ -94,7 +84,7 @@ def _parts_of_filled(cells):
     pieces = _linked(cells[rest], COMPOUNDS.max_scan_gap / size, 3.0)
     number = int(pieces.max(initial=-1))
     for _, members in members_of(pieces):
-        inner, _ = bar_with_lines(cells[rest[members]])
+        inner = bar_with_lines(cells[rest[members]])
         pieces[members[inner > 0]] = number + inner[inner > 0]
         number += int(inner.max())
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
@@ -105,7 +95,7 @@ def _parts_of_filled(cells):
     if lost.any():
         owned = np.flatnonzero(~lost)
         parts[lost] = parts[owned[cKDTree(cells[owned]).query(cells[lost])[1]]]
-    return parts, int(count + large.sum())
+    return parts
 
 
 def _in_lines(cells, longest_gap, window):
@@ -114,8 +104,6 @@ def _in_lines(cells, longest_gap, window):
     Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and oblique.
     """
     result = np.zeros(len(cells), bool)
-    if not len(cells):
-        return result
     size = CELL_UNITS * COORDINATE_SCALE
     steps = int(COMPOUNDS.max_border_slope * window / COMPOUNDS.max_border_drift)
     gap, length, chunk = round(longest_gap / size) // 2 * 2, round(window / size) | 1, int(MORPHOLOGY_CHUNK / size)
@@ -184,8 +172,6 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
 
 def _in_runs(cells, longest_gap, shortest_run):
     """(K,) whether a cell lies in a run of paint along the first axis, across the road; gaps are closed, cells are sorted by the second axis."""
-    if not len(cells):
-        return np.zeros(0, bool)
     size = CELL_UNITS * COORDINATE_SCALE
     # OpenCV moves what an even number of cells closes or opens
     gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(MORPHOLOGY_CHUNK / size)
@@ -264,8 +250,6 @@ def _bars(column):
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
     thick, broad = s1 - s0, d1 - d0
     rows = np.flatnonzero((thick >= CLASSES.stop_line_width[0]) & (thick <= CLASSES.stop_line_width[1]) & (broad >= COMPOUNDS.max_stop_line_gap))
-    if len(rows) < 2:
-        return np.empty((0, 2), np.int64)
     # nearly the same front and rear
     pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(COMPOUNDS.max_side_shift, p=np.inf, output_type="ndarray").reshape(-1, 2)
     a, b = rows[pairs].T
@@ -306,19 +290,15 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
     parts[rows[inside & (parts[rows] < 0)]] = parts[bar[0]]
 
 
-def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
+def bar_with_lines(cells: np.ndarray) -> np.ndarray:
     """Cut a bar from the lines that end at it or cross it, if that is all there is. The head of an arrow is no bar: it is longer or has a tip.
 
-    `cells` : (K, 2) int, along the road and across it, different ones. Returns (K,) int, the part of every cell from 0 on, and how many there are.
+    `cells` : (K, 2) int, along the road and across it, different ones. Returns (K,) int, the part of every cell from 0 on.
     """
-    undivided = np.zeros(len(cells), np.int64), 1
+    undivided = np.zeros(len(cells), np.int64)
     if not len(cells):
         return undivided
-    first = cells.min(axis=0)
-    mask = np.zeros(cells.max(axis=0) - first + 1, bool)
-    mask[tuple((cells - first).T)] = True
-    for axis, gap in enumerate((COMPOUNDS.max_scan_gap, COMPOUNDS.max_paint_gap)):
-        mask = fill_gaps(mask, int(round(gap / CELL_SIZE)), axis)
+    mask, first = closed_mask(cells, (int(round(COMPOUNDS.max_scan_gap / CELL_SIZE)), int(round(COMPOUNDS.max_paint_gap / CELL_SIZE))))
     reach = np.where(mask.any(axis=1), mask.shape[1] - mask[:, ::-1].argmax(axis=1) - mask.argmax(axis=1), 0)
     broad = np.flatnonzero(reach * CELL_SIZE > COMPOUNDS.max_width_alone)
     if not len(broad):
@@ -330,10 +310,10 @@ def bar_with_lines(cells: np.ndarray) -> tuple[np.ndarray, int]:
     short = box.shape[1] * CELL_SIZE < COMPOUNDS.min_stop_line_piece
     if not thin <= len(box) * CELL_SIZE <= thick or short or box.mean() < CLASSES.min_stop_line_fill:
         return undivided
-    row, parts, count = cells[:, 0] - first[0], np.zeros(len(cells), np.int64), 1
+    row, parts = cells[:, 0] - first[0], undivided.copy()
     for side, length in ((row < front, front * CELL_SIZE), (row >= rear, (len(mask) - rear) * CELL_SIZE)):
         if COMPOUNDS.ragged_rim < length < COMPOUNDS.min_length_beside_bar:
             return undivided
         if length > COMPOUNDS.ragged_rim:
-            parts[side], count = count, count + 1
-    return parts, count
+            parts[side] = parts.max() + 1
+    return parts

@@ -105,11 +105,7 @@ def patch_level(z: np.ndarray, bright: float) -> np.ndarray:
     size = ASPHALT.patch_neighbourhood, ASPHALT.patch_neighbourhood
     share, scanned = (cv2.boxFilter(a.view(np.uint8), -1, size, normalize=False, borderType=cv2.BORDER_CONSTANT) for a in (above, finite))
     filled = (share > scanned // 2) & (scanned > 0.1 * ASPHALT.patch_neighbourhood**2)
-    if np.count_nonzero(filled) < ASPHALT.patch_side**2:
-        return level
     core = _morphed(cv2.erode, filled, ASPHALT.patch_side)
-    if not core.any():
-        return level
     patches = _morphed(cv2.dilate, core, ASPHALT.patch_side + 2 * ASPHALT.patch_rim) & (filled | above)
     labels, count = ndimage.label(patches)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
@@ -158,9 +154,6 @@ class _OtsuSplit:
     middle: float   # m, offset of the bin
     spread: float   # of asphalt's z, 1 where the background was even
     threshold: float
-    below: float   # means of the classes
-    above: float
-    share: float   # of the bright class
     accepted: bool   # whether the classes are two materials and not one cut in half
 
 
@@ -267,10 +260,9 @@ def split_bins(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: li
 
 def _split(z, middle, separation, highest):
     if len(z) < ASPHALT.min_bin_cells:
-        return _OtsuSplit(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
+        return _OtsuSplit(middle, 1.0, 0.0, False)
     dim = z[z <= highest]
     median, spread = asphalt_statistics(dim if len(dim) >= ASPHALT.min_asphalt_share * len(z) else z)
     z = np.clip((z - median) / spread, *ASPHALT.histogram_limits)
     threshold, below, above, share = otsu(z)
-    accepted = above - below > separation and threshold > 1.0 and share <= 0.5
-    return _OtsuSplit(middle, spread, threshold, below, above, share, accepted)
+    return _OtsuSplit(middle, spread, threshold, above - below > separation and threshold > 1.0 and share <= 0.5)

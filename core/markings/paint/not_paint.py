@@ -168,10 +168,7 @@ class RimBands:
         band = ((distance.take(cells_near) / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(RIMS.band_cells)).astype(np.int32)
         band = np.minimum(band, RIMS.gutter_bands - 1)
         rows, columns = (-(-n // RIMS.coarse_cells) for n in distance.shape)
-        cell = cells_near.astype(np.int32)
-        row = cell // np.int32(distance.shape[1])
-        column = cell - row * np.int32(distance.shape[1])
-        square = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells)
+        square = _squares(cells_near.astype(np.int32), distance.shape[1], columns)
         bin_index = (square * np.int32(RIMS.gutter_bands) + band).astype(np.intp)
         counts = np.bincount(bin_index, minlength=RIMS.gutter_bands * rows * columns).astype(float)
         return cls(distance, cells_near, band, square, bin_index, _around(counts.reshape(rows, columns, RIMS.gutter_bands)))
@@ -179,6 +176,13 @@ class RimBands:
     def sums(self, values: np.ndarray) -> np.ndarray:
         """(bands, squares along, squares across) sums of (N,) values at the cells along RIM_REACH either way."""
         return _around(np.bincount(self.place, values, self.seen.size).reshape(*self.seen.shape[1:], RIMS.gutter_bands))
+
+
+def _squares(cell, width, columns):
+    """(N,) int32 flat numbers of the squares of 20 cm that cells lie in; `width` : cells in a row, `columns` : squares in a row."""
+    row = cell // np.int32(width)
+    column = cell - row * np.int32(width)
+    return row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells)
 
 
 def _around(counts):
@@ -191,8 +195,6 @@ def _around(counts):
 def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
     """(rows, columns) bool, cells of concrete gutters, by our own rule; `z` : (rows, columns) spreads above asphalt, NaN where not scanned."""
     result = np.zeros(z.shape, bool)
-    if not len(rim.near):
-        return result
     value, scanned = z.take(rim.near), rim.seen
     share = rim.sums(value > RIMS.gutter_brightness) / np.maximum(scanned, 1e-9)
     # a cell at the rim is half curb: the first band is not tested on its own
@@ -232,9 +234,7 @@ def raised_cells(heights: Sequence[tuple[np.ndarray, np.ndarray]], mask: np.ndar
     count, total = np.zeros(2 * size), np.zeros(2 * size)
     bright = mask.ravel()
     for cell, z in heights:
-        row = cell // np.int32(mask.shape[1])
-        column = cell - row * np.int32(mask.shape[1])
-        square = row // np.int32(RIMS.coarse_cells) * np.int32(columns) + column // np.int32(RIMS.coarse_cells) + np.int32(size) * bright.take(cell)
+        square = _squares(cell, mask.shape[1], columns) + np.int32(size) * bright.take(cell)
         count += np.bincount(square, minlength=2 * size)
         total += np.bincount(square, (z - low).astype(float), 2 * size)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -158,7 +158,7 @@ class _Window:
     def _from_averages(self, cells, settings):
         """Cells of paint where single points are noisy: bright pieces must have the shape of paint, too."""
         points = self._points(self.first, self.last)
-        cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
+        cell = cell_numbers(points.records, cells.grid)
         averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, settings.lowest)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.source.frame))
         return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.lowest), None
@@ -223,14 +223,6 @@ def marking_mask(path: str | PathLike, image: IntensityImage, origin: np.ndarray
         yield burn
 
 
-def _pixel_centres(image: IntensityImage, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Local x, y (M,) of the centres of the pixels that places lie in, each once, and the (M,) index of a place in each pixel."""
-    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
-    _, first = np.unique(row * (image.width + 1) + column, return_index=True)
-    left, size, _, top, _, _ = image.geotransform
-    return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
-
-
 def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityImage, origin: np.ndarray,
                     road: Road) -> tuple[np.ndarray, np.ndarray]:
     """Local x, y (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
@@ -239,8 +231,11 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityI
     quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
-    x, y = road.to_map(s, d)
-    x, y, nearest = _pixel_centres(image, x, y, origin)
+    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(*road.to_map(s, d), origin))
+    # each pixel once, by one of the places in it
+    _, nearest = np.unique(row * (image.width + 1) + column, return_index=True)
+    left, size, _, top, _, _ = image.geotransform
+    x, y = (left - origin[0]) + (column[nearest] + 0.5) * size, (top - origin[1]) - (row[nearest] + 0.5) * size
     s, d = road.locate(x, y, s[nearest], np.inf)
     finite = np.isfinite(s)
     x, y, s, d = x[finite], y[finite], s[finite], d[finite]

@@ -6,10 +6,10 @@ changes along the road and small corrections as prior. Two passes meet in their 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+import itertools
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,21 +24,19 @@ from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
-from ..store.section_store import SectionStore
 from ..weights import ADJUST, FRAME, REGISTER
-from .register import AXES, PLAN_AXES, WINDOW_LENGTH, MovedPoints, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 
 
-def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
+def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
     """Adjust the passes over every road to each other where they measurably disagree.
 
     Points and tracks are moved in plan and height; the reference lines of the roads stay. Where a drive goes on alone, it is moved on as
     where it left the others, so that it has no step there.
 
     survey : Survey with times; its store and frame are replaced where passes are moved
-    folder : of the moved points; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
     moves: dict[int, tuple[np.ndarray, np.ndarray]] = {}
@@ -58,7 +56,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
             if warning := warning_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
                 progress.warn(warning)
         frame = survey.frame
-        replace_points(survey, corrections.of_points, progress.part(0.5, 1.0), folder)
+        replace_points(survey, corrections, progress.part(0.5, 1.0))
         survey.moves = corrections
         survey.frame = replace(frame, passes=[_moved_track(frame, corrections, p) for p in frame.passes])
 
@@ -72,8 +70,7 @@ def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray,
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
     stations = np.arange(first, last + REGISTER.correction_step / 2, REGISTER.correction_step)
     count = len(stations)
-    rows = np.arange(count - 1)
-    step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
+    step = sparse.diags([-1.0, 1.0], [0, 1], (count - 1, count))
     prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / ADJUST.drift_change_sigma**2 + sparse.identity(count) / ADJUST.drift_sigma**2)
     corrections = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
@@ -150,38 +147,38 @@ def _moved_track(frame, moves, p):
     if p.number not in moves.by_pass:
         return p
     change = _changes(frame.road(p.road), p.s, p.d, moves.metres(p.number, p.s))
-    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
-                   _by_station=None, _progress=None, _span=None, _by_tick={})
+    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)})
 
 
-def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]], progress: Progress = Progress(),
-                   folder: Path | None = None) -> None:
-    """Replace the store of a Survey by one of moved points.
+@dataclass(frozen=True)
+class _Moves:
+    """Moves points of a survey: `of_points` of `moves` gives MovedPoints of records, and `reach` how far in plan, m, at most."""
 
-    moves : gives those of the Columns of a section
-    folder : of the moved points; None for a temporary file
-    """
-    before, frame = survey.store, survey.frame
-    store = SectionStore(before.dtype, before.section_length, folder)
+    frame: RoadFrame
+    moves: Any
 
-    def part(key):
-        records = before.section(*key)
+    @property
+    def reach(self) -> float:
+        """m of station, at most."""
+        return self.moves.reach / FRAME.bend_stretch[0] + COORDINATE_SCALE
+
+    def moved(self, records: Columns) -> Columns:
+        """The records of points where they are moved to."""
         moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
-        for number, rows, metres in moves(records):
+        for number, rows, metres in self.moves.of_points(records):
             s, d = (records[name].take(rows) * COORDINATE_SCALE for name in "sd")
-            for name, change in zip(MOVED_COLUMNS, _changes(frame.road(frame.passes[number].road), s, d, metres)):
+            for name, change in zip(MOVED_COLUMNS, _changes(self.frame.road(self.frame.passes[number].road), s, d, metres)):
                 moved[name][rows] += to_units(change)
-        return store.partition(key[0], records.with_columns(**moved)) if len(records) else None
+        return records.with_columns(**moved)
 
-    try:
-        for points in ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress):
-            if points is not None:
-                store.add(points)
-    except BaseException:
-        store.close()
-        raise
-    before.close()
-    survey.store = store
+
+def replace_points(survey: Any, moves: Any, progress: Progress = Progress()) -> None:
+    """Move the points of a Survey within its store; `moves` : as of `_Moves`."""
+    folder = survey.store.folder
+    before = list(folder.iterdir()) if folder else []
+    survey.put_in_order(folder, survey.executor, progress, _Moves(survey.frame, moves))
+    for file in before:
+        file.unlink()
 
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
@@ -312,30 +309,20 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
-    named = [f"{start:.0f} to {end:.0f} m (" + (
-                 f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-                 else f"up to {100 * metres:.1f} cm remain)") for start, end, metres in places[:ADJUST.most_named]]
-    more = _further(places)
-    return (f"Road {road}: its passes do not lie on each other at {', '.join(named)}{more}: lines may be doubled there. Adjust the trajectories to "
-            "each other, or process each drive by itself.")
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
+            "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    if not places:
-        return ""
     return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
-            "measure a control point there if these centimetres matter.")
+            "measure a control point there if these centimetres matter.") if places else ""
 
 
 def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    named = (f"{start:.0f} to {end:.0f} m ({size.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named])
-    return ", ".join(named) + _further(places)
-
-
-def _further(places):
-    return f" and at {len(places) - ADJUST.most_named} further places" if len(places) > ADJUST.most_named else ""
+    far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
+    named = (f"{start:.0f} to {end:.0f} m ({far if np.isinf(metres) else size.format(100 * metres)})" for start, end, metres in places)
+    further = len(places) - ADJUST.most_named
+    return ", ".join(itertools.islice(named, ADJUST.most_named)) + (f" and at {further} further places" if further > 0 else "")
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
@@ -352,26 +339,24 @@ class Beside(NamedTuple):
     stations: np.ndarray   # stations, places: (N,) m on the first, middles of windows of `correction_step`, and on the second
     places: np.ndarray
     apart: np.ndarray   # (N,) m of offset, left positive, from the first to the second
-    up: np.ndarray   # (N,) m by which the points of the second lie higher, NaN where both hardly see the same
 
 
 def compare_carriageways(survey: Any, progress: Progress = Progress()) -> None:
     """Tell how far roads of a Survey lie apart in height that run beside each other and share no pass, after its passes were adjusted."""
     for pair in roads_beside(survey.frame):
-        up = ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))
-        measured = pair._replace(up=np.array(list(up)))
-        message, warns = _message_of_carriageways(measured)
+        up = np.array(list(ordered_map(partial(_height_apart, survey, pair), range(len(pair.stations)))))
+        message, warns = _message_of_carriageways(pair, up)
         (progress.warn if warns else progress.info)(message)
 
 
 def roads_beside(frame: Any) -> list[Beside]:
-    """Pairs of roads that run beside each other for `shortest_beside` and more on one level; `up` is not known yet."""
+    """Pairs of roads that run beside each other for `shortest_beside` and more on one level."""
     pairs = []
     for road, other_road, s, places, offset, rise in _parallel(frame):
         rows = np.flatnonzero(np.abs(rise) < FRAME.level_separation)
         if len(rows) * REGISTER.correction_step >= ADJUST.shortest_beside:
             way = np.sign(np.cos(frame.road(road).heading(s[rows]) - frame.road(other_road).heading(places[rows])))
-            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows], np.full(len(rows), np.nan)))
+            pairs.append(Beside(road, other_road, s[rows], places[rows], -way * offset[rows]))
     return pairs
 
 
@@ -438,17 +423,20 @@ def _flat_cells(along, across, z):
     return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
 
 
-def _message_of_carriageways(pair: Beside) -> tuple[str, bool]:
-    """What is said of two roads beside each other, and whether it is a warning."""
-    measured = np.isfinite(pair.up)
-    far = measured & (np.abs(pair.up) > ADJUST.max_height_apart)
+def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
+    """What is said of two roads beside each other, and whether it is a warning.
+
+    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
+    """
+    measured = np.isfinite(up)
+    far = measured & (np.abs(up) > ADJUST.max_height_apart)
     intro = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{intro}. Their drives differ in height at "
-                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(pair.up[far]).tolist())), 'by up to {:.1f} cm')}. "
+                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(up[far]).tolist())), 'by up to {:.1f} cm')}. "
                 "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False
-    return (f"{intro}: in height they agree within {100 * np.abs(pair.up[measured]).max():.1f} cm; "
+    return (f"{intro}: in height they agree within {100 * np.abs(up[measured]).max():.1f} cm; "
             "how far they lie apart across is not known.", False)

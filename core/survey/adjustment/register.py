@@ -35,12 +35,9 @@ _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 
 @dataclass(frozen=True)
 class PassCorrections:
-    """East, north and up corrections of every pass that was moved, by station.
+    """East, north and up corrections of every pass that was moved, by station."""
 
-    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes `correction_step` apart; constant
-        beyond the first and the last node
-    """
-
+    # {pass number: (m of the first node, (3, N) int16 in 0.1 mm)}, nodes `correction_step` apart; constant beyond the first and the last
     by_pass: dict[int, tuple[float, np.ndarray]]
 
     def metres(self, number: int, s: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -55,6 +52,11 @@ class PassCorrections:
         for _, rows, metres in self.of_points(records):
             corrections[:, rows] = [to_units(v) for v in metres]
         return corrections
+
+    @property
+    def reach(self) -> float:
+        """m, how far any point is moved in plan at most."""
+        return max(float(np.hypot(*np.abs(values[:2]).max(axis=1) * COORDINATE_SCALE)) for _, values in self.by_pass.values())
 
     def of_points(self, records: Columns | np.ndarray) -> Iterator[MovedPoints]:
         """Yield the corrections of points (Columns or structured records), pass by pass."""
@@ -113,15 +115,11 @@ class PassOffsets:
 
 @dataclass(frozen=True)
 class Strips:
-    """One pass, or one scanner of it, in one window: rows of cells of height and intensity without their slow variations.
-
-    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown and at faces, of whose brightness each
-        drive sees another side
-    """
+    """One pass, or one scanner of it, in one window: rows of cells of height and intensity without their slow variations."""
 
     heights: np.ndarray   # heights, steps: (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
     steps: np.ndarray
-    paint: np.ndarray
+    paint: np.ndarray   # the same, in units of its robust standard deviation; NaN at faces, of whose brightness each drive sees another side
 
     @classmethod
     def of(cls, fine: np.ndarray, coarse: np.ndarray, h: np.ndarray, intensity: np.ndarray, shape: tuple[int, int]) -> Strips:
@@ -235,7 +233,8 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     if rough:
         evidence = _seen(survey, road, windows, rough, progress.part(1.0 / 3.0, 1.0 / 3.0))
         offsets = _combined(evidence)
-    along, left = (_mean_size(offsets, axis) for axis in PLAN_AXES)
+    # m between the passes along and across, of the pair that is farthest apart
+    along, left = (max((float(np.mean(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0) for axis in PLAN_AXES)
     order = PLAN_AXES if along > REGISTER.much_larger * left else PLAN_AXES[::-1]
     offsets = _uncoupled(survey, road, offsets, evidence, rough, order, progress)
     return [_with_rough(pair, rough.get((pair.one, pair.other), {})) for pair in offsets]
@@ -336,11 +335,6 @@ def _rough_offset(likeness):
     offsets = best_offsets(likeness, ROUGH_LAGS)[0]
     steps, paint = (offsets[CHANNELS.index(name)] for name in CHANNELS)
     return paint if np.isfinite(paint) else steps
-
-
-def _mean_size(offsets, axis):
-    """Mean distance of passes along an axis, m, of the pair that is farthest apart."""
-    return max((float(np.mean(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
 
 
 def _seen(survey, road, windows, moves, progress):

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
+from ...common.arrays import Rows
 from ...common.progress import Progress
 from ...curves.robust import robustly_smoothed
 from ..weights import MIRROR, RAYS
@@ -18,7 +19,7 @@ from .poses import PITCH, POSE, ROLL, YAW, Poses, X, Y, Z, spline_slopes, spline
 
 
 @dataclass
-class Returns:
+class Returns(Rows):
     """The returns that are adjusted, in order of intervals."""
 
     interval: np.ndarray   # interval, share: (N,) place in the splines
@@ -27,9 +28,6 @@ class Returns:
     place: np.ndarray   # (N, 3) m
     scanner: np.ndarray   # (N,) numbers
     tick: float = 0.0   # s to which the times are rounded; 0 where they are exact
-
-    def __getitem__(self, which: np.ndarray) -> Returns:
-        return Returns(self.interval[which], self.share[which], self.time[which], self.place[which], self.scanner[which], self.tick)
 
 
 @dataclass
@@ -54,7 +52,8 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
     for number in range(RAYS.rounds):
         equations, misfit, by_rounding, count = _equations(poses, guess, crossfall, returns, noise, progress)
         change, common, covariance, follow = equations.solve()
-        poses = poses.changed(change, common.reshape(-1, MOUNTING))
+        turn, lean, *lever = common.reshape(-1, MOUNTING).T
+        poses = replace(poses, control=poses.control + change, turn=poses.turn + turn, lean=poses.lean + lean, lever=poses.lever + np.array(lever).T)
         with np.errstate(invalid="ignore"):
             calm = np.fmin(noise, np.maximum(RAYS.noise_of_misfit * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), RAYS.least_noise))
         settled = np.nanmax(noise / calm) < RAYS.settled and np.abs(change[:, :3]).max() < RAYS.converged

@@ -86,7 +86,10 @@ class ScannerSplitter:
         """(N,) uint8 number of the scanner on whose ray a point lies nearest; (N,) s and (N, 3) map coordinates."""
         since = np.asarray(time, float) - self.start
         interval, share = self._places(since)
-        off = [_ray_distance(self.poses, interval, share, since, place - self.origin, number) for number in range(self.poses.scanners)]
+        off = []   # m off the rays of each scanner
+        for number in range(self.poses.scanners):
+            off_rays = misfits(self.poses, interval, share, since, place - self.origin, np.full(len(since), number))
+            off.append(np.where(off_rays.range > RAYS.min_range, np.abs(off_rays.off).max(axis=0), np.inf))
         return np.argmin(np.stack(off), axis=0).astype(np.uint8)
 
     def _places(self, since):
@@ -95,9 +98,3 @@ class ScannerSplitter:
             rows = np.flatnonzero(since >= drive.start) if drive.first else np.arange(len(since))
             interval[rows], share[rows] = drive.interval(since[rows])
         return interval, np.clip(share, 0.0, 1.0)
-
-
-def _ray_distance(poses: Poses, interval: np.ndarray, share: np.ndarray, time: np.ndarray, place: np.ndarray, number: int) -> np.ndarray:
-    """(N,) m by which points lie off the rays of one scanner; inf behind it."""
-    off_rays = misfits(poses, interval, share, time, place, np.full(len(time), number))
-    return np.where(off_rays.range > RAYS.min_range, np.abs(off_rays.off).max(axis=0), np.inf)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -64,11 +64,6 @@ class Poses:
         cos, sin, c, s = np.cos(self.turn), np.sin(self.turn), np.cos(self.lean), np.sin(self.lean)
         zero = np.zeros(self.scanners)
         return (np.stack([c * cos, c * sin, -s], axis=1), np.stack([-sin, cos, zero], axis=1), np.stack([s * cos, s * sin, c], axis=1))
-
-    def changed(self, control: np.ndarray, mounting: np.ndarray) -> Poses:
-        """The poses with (K, 6 + S) added to the control values and (S, 5) to turn, lean and lever."""
-        return replace(self, control=self.control + control, turn=self.turn + mounting[:, 0], lean=self.lean + mounting[:, 1],
-                       lever=self.lever + mounting[:, 2:])
 
 
 def spline_weights(share: np.ndarray) -> np.ndarray:
@@ -245,15 +240,12 @@ def _quality(fixes):
 
 def _with_true_rate(one):
     """The scanner with its mean rate, by which the phases of neighbouring windows agree."""
-    change = np.concatenate([_phase_steps(fixes, one.rate) for fixes in one.fixes])
+    change = []   # radians by which the phase gains on an even rate between neighbouring windows
+    for fixes in one.fixes:
+        seconds = np.diff(fixes.time)
+        step = np.diff(fixes.phase) - 2 * np.pi * one.rate * seconds
+        change += ((step + np.pi) % (2 * np.pi) - np.pi)[seconds < 1.5 * TRACK.window].tolist()
     return Spinning(one.number, one.rate + float(np.median(change)) / (2 * np.pi * TRACK.window), one.fixes) if len(change) else one
-
-
-def _phase_steps(fixes, rate):
-    """(M,) radians by which the phase gains on an even rate between neighbouring windows."""
-    seconds = np.diff(fixes.time)
-    step = np.diff(fixes.phase) - 2 * np.pi * rate * seconds
-    return ((step + np.pi) % (2 * np.pi) - np.pi)[seconds < 1.5 * TRACK.window]
 
 
 def first_poses(samples: Samples, tracks: list[FirstTrack], scanners: list[Spinning]) -> Poses:

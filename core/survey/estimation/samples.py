@@ -16,7 +16,7 @@ from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..las.samples import TimeSlots
-from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
+from ..trajectory.time_systems import unwrap_week, wrapped_week
 from ..weights import LAS, TRACK
 
 SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
@@ -70,9 +70,7 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     span = float(time.min()), float(time.max())
     if span[0] == span[1]:
         return Samples(np.zeros(len(time)), place, scanner, span[0], origin, False, [slice(0, len(time))])
-    if wrapped_week(span):
-        time = np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
-    return samples_of(time, place, scanner, origin, slots.stride)
+    return samples_of(unwrap_week(time) if wrapped_week(span) else time, place, scanner, origin, slots.stride)
 
 
 def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin: np.ndarray, stride: int = 1) -> Samples:

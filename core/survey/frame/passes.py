@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from math import hypot
 
 import numpy as np
@@ -20,29 +21,19 @@ MAX_ROAD_LENGTH = 200_000.0  # derived: m: stations have 32 bits of 0.1 mm; a lo
 
 @dataclass(frozen=True)
 class _DrivenPath:
-    """A stretch of the trajectory.
-
-    line_first, line_last : rows without the halves of turns on the spot at the ends, where the vehicle turns but the
-        road does not; `line_last` exclusive
-    """
+    """A stretch of the trajectory."""
 
     first: int   # first, last: trajectory rows, `last` exclusive
     last: int
     length: float   # metres driven
-    line_first: int
+    line_first: int   # line_first, line_last: rows without the halves of turns on the spot, where the road does not turn; `line_last` exclusive
     line_last: int
 
 
 def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
     """(M,) indices of (N,) positions at least `step` metres of driving apart, with the first and the last."""
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    if driven[-1] < step:
-        return np.unique([0, len(x) - 1])
-    cell = np.floor(driven / step)
-    keep = np.flatnonzero(np.r_[True, np.diff(cell) > 0])
-    if keep[-1] != len(x) - 1:
-        keep = np.r_[keep, len(x) - 1]
-    return keep
+    return np.union1d(np.flatnonzero(np.r_[True, np.diff(np.floor(driven / step)) > 0]), [len(x) - 1])
 
 
 def moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_radius) -> np.ndarray:
@@ -148,12 +139,6 @@ def _turn_ends(heading, along, apex):
     return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
 
 
-def _apex(px, py, heading, a, b):
-    """Index of the farthest position between two with opposite headings, in a U-turn or a reversal."""
-    out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
-    return a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
-
-
 def _return_cuts(px, py, along, heading):
     """[(index, whether it is a turn on the spot)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(FRAME.same_carriageway, output_type="ndarray")
@@ -175,7 +160,9 @@ def _return_cuts(px, py, along, heading):
         # round, so that neither part has two stations at the crossing, also where it crosses on another level
         is_turn = bool(is_back and path < FRAME.min_loop_length + 20)
         if is_turn:
-            start = _apex(px, py, heading, a, b)
+            # the farthest position between two with opposite headings
+            out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
+            start = a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
         else:
             start = b if joins else int(np.searchsorted(along, (along[a] + along[b]) / 2))
         cuts.append((start, is_turn))
@@ -184,10 +171,7 @@ def _return_cuts(px, py, along, heading):
 
 @dataclass
 class Pass:
-    """One run of the vehicle along a road.
-
-    attitude : (3, N) roll, pitch and heading in radians, 0 where unknown; None without attitude
-    """
+    """One run of the vehicle along a road."""
 
     number: int   # of the pass, in order of time
     road: int   # number of its road
@@ -198,15 +182,11 @@ class Pass:
     z: np.ndarray
     s: np.ndarray   # s, d: (N,) station and offset of the vehicle on the road, m
     d: np.ndarray
-    attitude: np.ndarray | None = field(default=None, repr=False)
-    _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)
-    _progress: np.ndarray | None = field(default=None, repr=False)
-    _span: tuple[float, float] | None = field(default=None, repr=False)
-    _by_tick: dict = field(default_factory=dict, repr=False)
+    attitude: np.ndarray | None = field(default=None, repr=False)   # (3, N) roll, pitch and heading in radians, 0 where unknown; None without
 
     def __getstate__(self) -> dict:
         """What was driven, without the tables that speed up its use."""
-        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self) if attribute.init and not attribute.name.startswith("_")}
+        return {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}
 
     def __setstate__(self, state: dict) -> None:
         Pass.__init__(self, **state)
@@ -217,20 +197,16 @@ class Pass:
         It is constant before the first and after the last sample, and interpolated linearly in tables with a step of 5 ms, so that many times in any
         order are fast.
         """
-        if not self._by_tick:
-            span = self.time[-1] - self.time[0]
-            tick = max(FRAME.time_tick, span / FRAME.max_ticks)
-            self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
-        tick, times = self._by_tick["time"]
+        tick, times, tables = self._by_tick
         ticks = (np.asarray(time, float) - times[0]) * (1.0 / tick)
         np.clip(ticks, 0.0, len(times) - 1.5, out=ticks)
         k = ticks.astype(np.intp)
         ticks -= k
         columns = []
         for name in names:
-            if name not in self._by_tick:
-                self._by_tick[name] = np.interp(times, self.time, getattr(self, name))
-            table = self._by_tick[name]
+            if name not in tables:
+                tables[name] = np.interp(times, self.time, getattr(self, name))
+            table = tables[name]
             values = table.take(k, mode="clip")
             step = table[1:].take(k, mode="clip")
             step -= values
@@ -238,6 +214,13 @@ class Pass:
             values += step
             columns.append(values)
         return columns
+
+    @cached_property
+    def _by_tick(self):
+        """s from tick to tick, their times, and {name: what `at` gives at these}, as far as it was asked for."""
+        span = self.time[-1] - self.time[0]
+        tick = max(FRAME.time_tick, span / FRAME.max_ticks)
+        return tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2), {}
 
     def position(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
         """Local x, y, z of the vehicle, (N,) m each, at (N,) times."""
@@ -248,29 +231,28 @@ class Pass:
 
     def progress_at(self, time: np.ndarray) -> np.ndarray:
         """Metres of road driven since the pass began, at (N,) times; never decreases, also where the vehicle reverses."""
-        if self._progress is None:
-            self._progress = np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
         return np.interp(time, self.time, self._progress)
+
+    @cached_property
+    def _progress(self):
+        return np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
 
     def at_station(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Offset and local height of the track, (N,) m each, at (N,) stations."""
-        stations, d, z = self._track_by_station()
+        stations, d, z = self._by_station
         return np.interp(s, stations, d), np.interp(s, stations, z)
 
     def height_at_station(self, s: np.ndarray) -> np.ndarray:
         """Local height of the track, (N,) m, at (N,) stations."""
-        stations, _, z = self._track_by_station()
+        stations, _, z = self._by_station
         return np.interp(s, stations, z)
 
-    def _track_by_station(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        if self._by_station is None:
-            order = np.argsort(self.s, kind="stable")
-            self._by_station = self.s[order], self.d[order], self.z[order]
-        return self._by_station
+    @cached_property
+    def _by_station(self):
+        order = np.argsort(self.s, kind="stable")
+        return self.s[order], self.d[order], self.z[order]
 
-    @property
+    @cached_property
     def span(self) -> tuple[float, float]:
         """(first, last) station of the pass, m."""
-        if self._span is None:
-            self._span = float(self.s.min()), float(self.s.max())
-        return self._span
+        return float(self.s.min()), float(self.s.max())

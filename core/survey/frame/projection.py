@@ -75,7 +75,8 @@ class _LineLookup:
         np.add(s, k, out=s, casting="unsafe")
         reach = int(corridor / COORDINATE_SCALE)
         if x.dtype == np.int64:
-            around = self._about(x, y, reach)
+            (west, east), (south, north) = self._box
+            around = (x >= west - reach) & (x <= east + reach) & (y >= south - reach) & (y <= north + reach)
             if not around.all():
                 near = around if near is None else near & around
         inside = self._inside(s, d, reach)
@@ -89,10 +90,6 @@ class _LineLookup:
         if _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
             return None
         return (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
-
-    def _about(self, x, y, reach):
-        (left, right), (bottom, top) = self._box
-        return (x >= left - reach) & (x <= right + reach) & (y >= bottom - reach) & (y <= top + reach)
 
     def _away(self, values, nodes, k, buffers, name):
         """(N,) float32 fine units from nodes to points along one axis."""

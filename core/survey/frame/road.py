@@ -6,6 +6,9 @@ are interpolated between nodes. The station of a point is where the normal of th
 
 from __future__ import annotations
 
+import itertools
+from functools import cached_property
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
@@ -13,7 +16,6 @@ from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ..weights import FRAME
-from .passes import moving_rows
 
 
 class Road:
@@ -36,7 +38,6 @@ class Road:
         self._curvature = np.gradient(self._heading, NODE_SPACING)
         self.end = start + NODE_SPACING * (len(nodes_x) - 1)
         self.length = self.end - FRAME.frame_extension
-        self._tree: cKDTree | None = None
 
     def __getstate__(self) -> dict:
         return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
@@ -126,20 +127,17 @@ class Road:
 
     def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = FRAME.corridor) -> np.ndarray:
         """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
-        if self._tree is None:
-            self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])
         distance, index = self._tree.query(np.c_[x, y], distance_upper_bound=corridor * 1.05 + 1.0)
         return np.where(np.isfinite(distance), self.start + 5 * NODE_SPACING * index, np.nan)
+
+    @cached_property
+    def _tree(self):
+        return cKDTree(np.c_[self.x[::5], self.y[::5]])
 
 
 # The reference line of a road: the smoothed track of its longest pass, continued by other passes.
 
 NODE_SPACING = 0.1     # derived: m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
-
-
-def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """(M, 3) positions at least half a metre apart along a track of (N,) x, y and z in metres."""
-    return np.c_[x, y, z][moving_rows(x, y)]
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -189,15 +187,12 @@ def _extend(x, y):
 def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
     """A line lengthened by a track that continues it at either end, driven in either direction; None if it does not.
 
-    Both are (N, 3) positions of `track_line`; the result has the direction of `line`.
+    Both are (N, 3) positions at least half a metre apart; the result has the direction of `line`.
     """
-    for way in (track, track[::-1]):
-        longer = _append_track(line, way)
+    for way, direction in itertools.product((track, track[::-1]), (1, -1)):
+        longer = _append_track(line[::direction], way)
         if longer is not None:
-            return longer
-        longer = _append_track(line[::-1], way)
-        if longer is not None:
-            return longer[::-1]
+            return longer[::direction]
     return None
 
 

@@ -16,7 +16,7 @@ from ..trajectory.shape import shaped_trajectory
 from ..trajectory.trajectory import Trajectory, clean_trajectory
 from ..weights import FRAME
 from .passes import MAX_ROAD_LENGTH, Pass, decimate_by_distance, moving_rows, split_into_passes
-from .road import Road, continue_line, reference_nodes, track_line
+from .road import Road, continue_line, reference_nodes
 from .row_table import SigmaAlong
 
 MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest corridor and the extension at the ends of a road
@@ -24,11 +24,7 @@ MAX_POINT_DISTANCE = 200.0    # derived: m from the track: exceeds the widest co
 
 @dataclass
 class RoadFrame:
-    """All roads and passes of a survey.
-
-    pass_sigma : {road number: SigmaAlong}, one sigma across of the middle of its passes, by what they differ or
-        by the accuracy of the trajectory where it was told, whichever is more; without entry where both are unknown
-    """
+    """All roads and passes of a survey."""
 
     origin: np.ndarray   # (3,) map coordinates of the local origin, m
     roads: list[Road]   # list of Road, by number
@@ -36,6 +32,8 @@ class RoadFrame:
     crs: str = ""   # WKT, "" where unknown
     has_time: bool = True   # whether points are assigned to passes by their time
     notes: Sequence[str] = ()   # remarks on the trajectory, for the log
+    # {road number: one sigma across of the middle of its passes}, by what they differ or by the accuracy of the trajectory where it was told,
+    # whichever is more; without entry where both are unknown
     pass_sigma: dict[int, SigmaAlong] = field(default_factory=dict)
     way_known: bool = True   # whether the direction of its passes is that of the drive, which an estimated trajectory may not know
 
@@ -160,7 +158,8 @@ def _line_of(track, turning, rows):
     straight = np.flatnonzero(~turning[rows[0]:rows[1]])
     if len(straight) > 1:
         rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
-    return track_line(*track[rows[0]:rows[1]].T)
+    track = track[rows[0]:rows[1]]
+    return track[moving_rows(*track[:, :2].T)]
 
 
 def _grow_road(number, track, turning, moved, driven, waiting):

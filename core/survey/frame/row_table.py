@@ -130,14 +130,10 @@ class RowTable:
 
     def _stretch(self, row, first, end):
         """The row at the stations from `first` to `end` (exclusive)."""
-        begin, last = max(first, int(self.spans.first[row])), min(end, int(self.spans.end[row]))
-        start = int(self.spans.start[row]) - int(self.spans.first[row])
-        if begin == first and last == end:
-            return self.values[start + first:start + end].copy()
         missing = self.missing if np.ndim(self.missing) == 0 else self.missing[row]
-        values = np.full(max(end - first, 0), missing, self.values.dtype)
-        if last > begin:
-            values[begin - first:last - first] = self.values[start + begin:start + last]
+        values, kept = np.full(max(end - first, 0), missing, self.values.dtype), self.spans.values_of(row, first, end)
+        begin = max(int(self.spans.first[row]) - first, 0)
+        values[begin:begin + kept.stop - kept.start] = self.values[kept]
         return values
 
     def __setitem__(self, key: tuple[Any, Any], values: Any) -> None:

@@ -7,7 +7,7 @@ import os
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import product, takewhile
 from typing import BinaryIO
 
 import numpy as np
@@ -64,13 +64,12 @@ class HeaderFields:
 
     def records(self, file: BinaryIO, size: int) -> Iterator[_Record]:
         """The variable length records before the points of a file of so many bytes, the last as far as it is there."""
-        position = self.header_size
-        for _ in range(self.vlrs):
-            record = _Record.read(file, position, VLR_HEADER_SIZE, size)
-            if record is None:
-                return
-            yield record
-            position += VLR_HEADER_SIZE + len(record.data)
+        return _records(file, self.header_size, self.vlrs, VLR_HEADER_SIZE, size)
+
+    def extended(self, file: BinaryIO, size: int) -> list[_Record]:
+        """The extended records behind the points that lie in the file."""
+        records = _records(file, self.first_evlr, self.evlrs if self.first_evlr >= self.header_size else 0, EVLR_HEADER_SIZE, size)
+        return list(takewhile(lambda record: record.at + EVLR_HEADER_SIZE + record.length <= size, records))
 
     def end_of_points(self, size: int) -> int:
         """The byte before which the points end at the latest, in a file of so many bytes."""
@@ -151,11 +150,26 @@ class _Record:
         return self if (head, data) == (self.head, self.data) else replace(self, head=head, data=data)
 
 
+def _records(file, position, count, head_size, size):
+    """Yield variable length records that follow each other from a byte of a file of so many bytes on."""
+    for _ in range(count):
+        record = _Record.read(file, position, head_size, size)
+        if record is None:
+            return
+        yield record
+        position += head_size + record.length
+
+
 def _base_size(point_format: int) -> int | None:
     """Bytes of a point without extra bytes; None for a format that laspy does not know."""
     from laspy import PointFormat, supported_point_formats
 
     return PointFormat(point_format).size if point_format in supported_point_formats() else None
+
+
+def _extra_bytes_described(records: list[_Record]) -> int:
+    """Bytes that the records which name extra bytes describe together."""
+    return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
 
 
 def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
@@ -274,7 +288,7 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
             return _MendedHeader()
         patches: list[tuple[int, bytes]] = []
         notes: list[str] = []
-        records, extended = list(stated.records(file, size)), list(_extended(file, stated, size))
+        records, extended = list(stated.records(file, size)), stated.extended(file, size)
         if len(extended) < stated.evlrs:
             patches.append((EVLR_COUNT_AT, struct.pack("<I", len(extended))))
             notes.append(f"{stated.evlrs - len(extended):,} of its {stated.evlrs:,} extended records lie beyond its end and are left out")
@@ -292,17 +306,6 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
         return mended if fields.compressed else mended.with_count(fields, _points_in_las(file, fields, size))
 
 
-def _extended(file, fields, size):
-    """The extended records behind the points that lie in the file."""
-    position = fields.first_evlr
-    for _ in range(fields.evlrs):
-        record = _Record.read(file, position, EVLR_HEADER_SIZE, size) if position >= fields.header_size else None
-        if record is None or position + EVLR_HEADER_SIZE + record.length > size:
-            return
-        yield record
-        position += EVLR_HEADER_SIZE + record.length
-
-
 def _lengths(fields, records, size):
     """The fields with the place and the length of the points by which they fill the file."""
     base = _base_size(fields.point_format)
@@ -313,13 +316,16 @@ def _lengths(fields, records, size):
         point_size = next((compression.point_size for record in records if (compression := _Compression.of(record))), 0)
         return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
     places = fields.points_at, records[-1].at + len(records[-1].head) + records[-1].length if records else fields.header_size
-    described = sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
-    for points_at, record_size in product(places, (fields.record_size, base + described, base)):
-        # as many points as are stated, of so many bytes each, end where the points of the file end
-        if base <= record_size <= MAX_RECORD_SIZE and points_at <= size \
-                and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]:
+    sizes = fields.record_size, base + _extra_bytes_described(records), base
+    for points_at, record_size in product(places, sizes):
+        if base <= record_size <= MAX_RECORD_SIZE and _fills(fields, points_at, record_size, size):
             return replace(fields, points_at=points_at, record_size=record_size)
     return fields
+
+
+def _fills(fields, points_at, record_size, size):
+    """Whether as many points as are stated, of so many bytes each, end where the points of the file end."""
+    return points_at <= size and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]
 
 
 def _mended_records(records, fields):

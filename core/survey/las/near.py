@@ -60,14 +60,11 @@ def _opened(states):
 
 @dataclass(frozen=True)
 class _Stored:
-    """Points as a file stores them, in less memory than their coordinates take.
+    """Points as a file stores them, in less memory than their coordinates take."""
 
-    raw : 3 of (N,) int32; intensity : (N,) uint16; scale, offset : (3,) m
-    """
-
-    raw: list[np.ndarray]
-    intensity: np.ndarray
-    scale: np.ndarray
+    raw: list[np.ndarray]   # 3 of (N,) int32
+    intensity: np.ndarray   # (N,) uint16
+    scale: np.ndarray   # scale, offset: (3,) m
     offset: np.ndarray
 
     @classmethod
@@ -112,49 +109,36 @@ class _LastRead:
 
 @dataclass
 class _RangesOfFile:
-    """The ranges of points of a file, and of those that were read the cells of `LAS.place_cell` m in which points lie.
-
-    ranges : (first, count); cells : {number of a range: (K,) int64}
-    """
+    """The ranges of points of a file, and of those that were read the bounds in which points lie."""
 
     header: CloudHeader
     last: _LastRead
-    ranges: list[tuple[int, int]] = field(default_factory=list)
-    cells: dict[int, np.ndarray] = field(default_factory=dict)
+    ranges: list[tuple[int, int]] = field(default_factory=list)   # (first, count)
+    bounds: dict[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)   # {number of a range: (2,) m, the lowest, and the highest}
 
     def within(self, number, reader, place, radius):
         """(N, 4) x, y, z, m, and intensity of those points of a range that lie in a square; none where no point of the range lies near it."""
-        cells = self.cells_about(place, radius)
-        if not self.may_hold(number, cells):   # another thread has read it meanwhile
+        if not self.may_hold(number, place, radius):   # another thread has read it meanwhile
             return np.empty((0, 4))
         stored = self.last.get((self.header.path, number))
         if stored is None:
             stored = _Stored.of(list(reader.points(self.header, *self.ranges[number], LAS.points_per_range)))
-            self.cells[number] = np.unique(_cells(*stored.places(slice(None))[:2]))
-            if self.may_hold(number, cells):
+            places = stored.places(slice(None))[:2]
+            self.bounds[number] = places.min(axis=1), places.max(axis=1)
+            if self.may_hold(number, place, radius):
                 self.last.keep((self.header.path, number), stored)
         return stored.within(place, radius)
 
     def numbers(self, reader, place, radius):
         """Numbers of the ranges in which points of a square may lie."""
-        cells = self.cells_about(place, radius)
-        if not len(cells):
+        if not self.may_hold(None, place, radius):
             return []
         if not self.ranges:
             self.ranges = [(first, count) for _, first, count in reader.ranges([self.header], LAS.points_per_range)]
-        return [number for number in range(len(self.ranges)) if self.may_hold(number, cells)]
+        return [number for number in range(len(self.ranges)) if self.may_hold(number, place, radius)]
 
-    def may_hold(self, number, cells):
-        return number not in self.cells or bool(np.isin(self.cells[number], cells, assume_unique=True).any())
-
-    def cells_about(self, place, radius):
-        """Cells of a square that lie in the bounds of the file."""
-        low, high = np.maximum(place - radius, self.header.minimum[:2]), np.minimum(place + radius, self.header.maximum[:2])
-        axes = [np.arange(np.floor(least / LAS.place_cell), np.floor(most / LAS.place_cell) + 1) * LAS.place_cell for least, most in zip(low, high)]
-        return _cells(*(axis.ravel() for axis in np.meshgrid(*axes)))
-
-
-def _cells(x, y):
-    """(N,) int64 numbers of the cells in which places lie."""
-    column, row = (np.floor(values / LAS.place_cell).astype(np.int64) for values in (x, y))
-    return (column << 32) + row
+    def may_hold(self, number, place, radius):
+        """Whether points of a range may lie in a square, by its bounds or, where these are not known, by those of the file."""
+        low, high = self.bounds.get(number, (self.header.minimum[:2], self.header.maximum[:2]))
+        reach = radius + LAS.bounds_tolerance
+        return bool(((low <= place + reach) & (place - reach <= high)).all())

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from ...common.parallel import ScratchBuffers
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
@@ -20,8 +22,7 @@ class ParallelCloudReader:
     def __init__(self, layers: Sequence[str] | None = None):
         self._layers = layers
         self._readers: dict[int, tuple[str, Any]] = {}  # thread -> path, laspy.LasReader
-        self._layouts: dict[str, Any] = {}   # path -> header and chunks of the files read last
-        self._buffers, self._lock = threading.local(), threading.Lock()
+        self._layout, self._buffers = lru_cache(LAS.most_layouts)(self._read_layout), ScratchBuffers()
 
     def __enter__(self) -> ParallelCloudReader:
         return self
@@ -41,8 +42,7 @@ class ParallelCloudReader:
             if _in_one_piece(file, size):
                 yield number, 0, file.count
             elif self._layout(file)[0].are_points_compressed:
-                for _, _, first, run in _chunk_runs(file, size, self._layout(file)[1]):
-                    yield number, first, sum(count for count, _ in run)
+                yield from ((number, *run) for run in self._chunk_runs(file, size))
             else:
                 yield from ((number, first, min(size, file.count - first)) for first in range(0, file.count, size))
 
@@ -68,22 +68,14 @@ class ParallelCloudReader:
         run = [(count, nbytes) for count, nbytes in run.tolist() if count]
         return self._read_chunks(file.path, header, record, start + int(length[:k].sum()), first, run)
 
-    def _layout(self, file):
+    def _read_layout(self, file):
         """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
-        layout = self._layouts.get(file.path)
-        if layout is None:
-            with open_cloud(file.path, self._layers, known=file) as reader:
-                header = reader.header
-            chunks = None
-            if header.are_points_compressed:
-                record, start, table = chunks_of(file.path)
-                chunks = record, start, np.array(table, np.int64).reshape(-1, 2)
-            layout = header, chunks
-            with self._lock:
-                while len(self._layouts) >= LAS.most_layouts:
-                    self._layouts.pop(next(iter(self._layouts)))
-                self._layouts[file.path] = layout
-        return layout
+        with open_cloud(file.path, self._layers, known=file) as reader:
+            header = reader.header
+        if not header.are_points_compressed:
+            return header, None
+        record, start, table = chunks_of(file.path)
+        return header, (record, start, np.array(table, np.int64).reshape(-1, 2))
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
@@ -92,10 +84,8 @@ class ParallelCloudReader:
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
             samples = (self._read_points(file, start, LAS.points_per_sample) for start in np.unique(starts).tolist())
         else:
-            header, chunks = self._layout(file)
-            runs = list(_chunk_runs(file, 1, chunks))
-            numbers = np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int))
-            samples = (self._read_chunks(file.path, header, *runs[k]) for k in numbers)
+            runs = list(self._chunk_runs(file, 1))
+            samples = (self._load(file, *runs[k]) for k in np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int)))
         for points in samples:
             yield np.array(points["gps_time"], float)
 
@@ -116,18 +106,30 @@ class ParallelCloudReader:
             for first in range(start, file.count, count):
                 yield self._read_points(file, first, count)
             return
-        first = start
+        for run in self._chunk_runs(file, 1):
+            if run[0] >= start:
+                yield self._load(file, *run)
+
+    def _chunk_runs(self, file, size):
+        """Yield (index of the first point, points) of runs of as many chunks as `size` points hold, at least one."""
+        first = before = 0
+        # for the last chunk the table may state the capacity
         for end in np.minimum(np.cumsum(self._layout(file)[1][2][:, 0]), file.count).tolist():
-            if end > first:
-                yield self._load(file, first, end - first)
-                first = end
+            if before > first and end - first > size:
+                yield first, before - first
+                first = before
+            before = end
+        if before > first:
+            yield first, before - first
+        if before < file.count:
+            raise truncated_file_error(file.path, file.count, before)
 
     def _read_points(self, file, first, count):
         return read_points(self._reader(file), file.path, first, count)
 
     def _read_chunks(self, path, header, record, place, first, table):
         """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
-        buffer = self._buffer(header, sum(count for count, _ in table))
+        buffer = self._buffers.of(sum(count for count, _ in table) * header.point_format.size)("points", np.uint8)
         with damage_from(path, header.point_count, first):
             with open(path, "rb") as file:
                 file.seek(place)
@@ -137,7 +139,7 @@ class ParallelCloudReader:
 
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
-        buffer = self._buffer(header, count)
+        buffer = self._buffers.of(count * header.point_format.size)("points", np.uint8)
         left = memoryview(buffer)
         with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
             file.seek(header.offset_to_point_data + first * header.point_format.size)
@@ -146,13 +148,6 @@ class ParallelCloudReader:
         if len(left):
             raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
         return _point_record(buffer, header)
-
-    def _buffer(self, header, count):
-        """Bytes for points; this thread's previous buffer where it is large enough, which avoids page faults."""
-        size, buffer = count * header.point_format.size, getattr(self._buffers, "bytes", None)
-        if buffer is None or len(buffer) < size:
-            buffer = self._buffers.bytes = np.empty(size, np.uint8)
-        return buffer[:size]
 
     def _reader(self, file):
         path, thread = file.path, threading.get_ident()
@@ -173,22 +168,3 @@ def _point_record(buffer, header):
 def _in_one_piece(file, size):
     """Whether the chunks of a file are too large to be decoded apart."""
     return min(file.chunk, file.count) > LAS.max_blocks_per_chunk * size
-
-
-def _chunk_runs(file, size, chunks):
-    """Runs of as many chunks as `size` points hold, at least one: (LASzip record, first byte, index of the first point, [(points, bytes)])."""
-    record, start, table = chunks
-    first, points, run = 0, 0, []
-    for count, length in table.tolist():
-        # for the last chunk the table may state the capacity
-        count = min(count, file.count - first - points)
-        if run and points + count > size:
-            yield record, start, first, run
-            start, first, points, run = start + sum(length for _, length in run), first + points, 0, []
-        if count > 0:
-            run.append((count, length))
-            points += count
-    if run:
-        yield record, start, first, run
-    if first + points < file.count:
-        raise truncated_file_error(file.path, file.count, first + points)

@@ -329,13 +329,17 @@ def flagged(block: Any) -> bool:
     return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max(initial=0))
 
 
+def packed_returns(block: Any) -> np.ndarray:
+    """(N,) return number + 16 * number of returns of a block."""
+    return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+
+
 def valid_points(block: Any) -> np.ndarray | None:
     """(N,) bool: the points of a block that are neither withheld nor noise; None for all. Its layers `flags` and `classification` are decoded."""
     has_withheld = flagged(block) and "withheld" in block.point_format.dimension_names
     withheld = np.asarray(block["withheld"]) != 0 if has_withheld else np.zeros(1, bool)
     classes = np.asarray(block["classification"])
-    low, high = NOISE_CLASSES
-    noise = (classes == low) | (classes == high)
+    noise = (classes == NOISE_CLASSES[0]) | (classes == NOISE_CLASSES[1])
     if not noise.any():
         return ~withheld if withheld.any() else None
     return ~(noise | withheld)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from ...io.weights import IO
 from ...lazy import laspy, pyproj
 from ..weights import LAS
 from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
-
-if TYPE_CHECKING:
-    from pyproj import CRS
 
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
@@ -40,8 +37,7 @@ class CloudHeader:
     maximum: tuple[float, ...]
     scales: tuple[float, ...]   # (3,) metres
     crs: str   # WKT, metric, "" where the file has none
-    has_time: bool   # has_time, has_channel, has_colour: whether the points have gps_time, a scanner channel, and colours
-    has_channel: bool
+    has_time: bool   # has_time, has_colour: whether the points have gps_time and colours
     adjusted_time: bool   # whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk: int = 0   # points that are compressed together; 1 in a LAS file, 0 where the number varies
     has_colour: bool = False
@@ -144,7 +140,7 @@ def read_header(path: str | os.PathLike[str], given: str = "") -> CloudHeader:
         return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
-            cloud_crs(header), "gps_time" in names, "scanner_channel" in names,
+            cloud_crs(header), "gps_time" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names,
             tuple(f"The file {path} contradicts its header: {note}." for note in (*mended.notes, *overflow)), units, _crs_of_records(header)[1])
 
@@ -277,7 +273,9 @@ def _crs_of_records(header: Any) -> tuple[str, str]:
 @lru_cache(maxsize=256)
 def _stated(text, keys, doubles, place):
     """As of `_crs_of_records`, of the contents of the records."""
-    written, (plane, vertical, problem) = _parsed(text.split(b"\0")[0].decode("utf-8", "replace")), _of_keys(_key_values(keys, doubles))
+    # text that is not understood counts as none: the user is then asked for the CRS
+    written = _crs(pyproj.CRS.from_wkt, text.split(b"\0")[0].decode("utf-8", "replace").strip() or None)
+    plane, vertical, problem = _of_keys(_key_values(keys, doubles))
     if _of_heights(written):
         written, vertical = plane, written
         if written is None:
@@ -305,7 +303,7 @@ def _contradiction(written, heights, plane, vertical, place):
     return ""
 
 
-def _of_keys(values: Mapping[int, Any]) -> tuple[CRS | None, CRS | None, str]:
+def _of_keys(values):
     """The horizontal and vertical CRS that GeoKeys name, None where they do not, and what contradicts itself in them."""
     plane, vertical = _coded(values.get(PROJECTED)) or _coded(values.get(GEODETIC)), _coded(values.get(VERTICAL))
     if _of_heights(plane):
@@ -374,15 +372,12 @@ def _length(code, size):
 
 def _coded(code):
     """The CRS of an EPSG code, None where it is none."""
-    try:
-        return pyproj.CRS.from_epsg(code) if code in EPSG_CODES else None
-    except pyproj.exceptions.CRSError:
-        return None
+    return _crs(pyproj.CRS.from_epsg, code if code in EPSG_CODES else None)
 
 
-def _parsed(text):
-    """The CRS of WKT, None where it is empty or not understood: the user is then asked for one."""
+def _crs(read, given):
+    """The CRS that a reader of pyproj makes of what is given; None for None, or where it is not understood."""
     try:
-        return pyproj.CRS.from_wkt(text) if text.strip() else None
+        return None if given is None else read(given)
     except pyproj.exceptions.CRSError:
         return None

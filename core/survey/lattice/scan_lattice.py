@@ -21,6 +21,7 @@ from scipy.interpolate import CubicSpline
 
 from ...common.arrays import RADIX_BITS
 from ...common.progress import Progress
+from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
 from ..store.records import COORDINATE_SCALE, take_rows
 from ..weights import LATTICE
@@ -49,15 +50,21 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
 
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
     """
+    lattice: ScanLattice
+    lattice, = in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor.passing(), progress)
+    return lattice
+
+
+def lattice_of(survey: Any, rotation_frequency: float, progress: Progress) -> Work:
+    """The work of `find_lattice`; `progress` is told what was found."""
     lattice = ScanLattice()
     if not survey.has_time:
         lattice.notes.append("Without gps_time in the cloud and time in the trajectory scan lines cannot be distinguished; "
                              "scanlines are made of the points near each section plane.")
-        progress.warn(lattice.notes[0])
-        return lattice
-    roads = survey.store.roads()
+    roads = survey.store.roads() if survey.has_time else []
+    # the samples of all roads together would take much memory
     for i, road in enumerate(roads):
-        samples = _sample_windows(survey, road)
+        samples = yield from _sample_windows(survey, road, (i + 0.3) / len(roads))
         rotations = {}
         for key, windows in samples.items():
             rotation = _rotation(windows, rotation_frequency)
@@ -65,7 +72,7 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
                 lattice.without[key] = _why_none(windows)
             else:
                 rotations[key] = rotation
-        phases = _mirror_phases(survey, road, rotations, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
+        phases = yield from _mirror_phases(survey, road, rotations, samples, (i + 1) / len(roads))
         lattice.mirror_phases.update(phases)
         lattice.without.update({key: NO_TURNING for key in rotations if key not in phases})
     _report_lattice(lattice, progress)
@@ -77,15 +84,14 @@ def _report_lattice(lattice, progress):
     if phases:
         rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in phases.values()}, key=float)
         progress.info(f"Scan lattice found for {len(phases)} run(s) of a scanner: {', '.join(rates)} lines per second.")
-    if not phases and not missing:
-        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
-                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
-        progress.warn(lattice.notes[-1])
     if missing:
         reasons = ", ".join(sorted(set(missing.values())))
-        note = (f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
-                "there scanlines are made of the points near each section plane.")
-        lattice.notes.append(note)
+        lattice.notes.append(f"There are no regular scan lines in {len(missing)} of {len(phases) + len(missing)} run(s) of a scanner ({reasons}); "
+                             "there scanlines are made of the points near each section plane.")
+    elif not phases and not lattice.notes:
+        lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
+                             f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
+    for note in lattice.notes:
         progress.warn(note)
 
 
@@ -128,8 +134,8 @@ def _phasors(survey, number, records):
     return time, (above + 1j * across) / np.where(size > 0, size, 1.0)
 
 
-def _sample_windows(survey, road):
-    """{(pass number, scanner): list of _RotationWindow} at places spread along each pass."""
+def _sample_windows(survey, road, until):
+    """Part of a work: {(pass number, scanner): list of _RotationWindow} at places spread along each pass."""
     places = []
     for p in survey.frame.passes_of(road):
         first, last = p.span
@@ -138,46 +144,30 @@ def _sample_windows(survey, road):
 
     samples: dict[tuple[int, int], list[_RotationWindow]] = {}
     phase = Phase(_windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
-    for windows in survey.executor.passing().run(phase, places):
+    for windows in (yield Asked(phase, places, until)):
         for key, window in windows.items():
             samples.setdefault(key, []).append(window)
     return samples
-
-
-def _runs_about(survey, road, number, middle, pieces=range(LATTICE.rotation_sample_pieces)):
-    """Yield (piece, (pass number, scanner), first returns) of a pass in some pieces of the road about a station: all at once would be too many."""
-    bounds = np.linspace(middle - LATTICE.rotation_sample_length / 2, middle + LATTICE.rotation_sample_length / 2, LATTICE.rotation_sample_pieces + 1)
-    for piece in pieces:
-        for key, records in scanner_runs(survey.window(road, bounds[piece], bounds[piece + 1]).records):
-            if key[0] == number:
-                yield piece, key, records
 
 
 def _windows_at(survey: Any, place: tuple[int, float], road: int) -> dict[tuple[int, int], _RotationWindow]:
     """The phase that looks at half a second of a pass, by its number, about a station: {(pass number, scanner): its points} of those that measured
     enough then."""
     number, middle = place
-    times: dict = {}
-    for piece, key, records in _runs_about(survey, road, number, middle):
-        times.setdefault(key, {})[piece] = records["time"]
-    rows = {}
-    for key, parts in times.items():
-        near = _near_in_time(list(parts.values()))
-        if sum(map(len, near)) >= LATTICE.min_window_points:
-            rows[key] = dict(zip(parts, near))
-    chosen: dict = {key: [] for key in rows}
-    pieces = sorted({piece for parts in rows.values() for piece, near in parts.items() if len(near)})
-    for piece, key, records in _runs_about(survey, road, number, middle, pieces):
-        if key in rows:
-            near = take_rows(records, rows[key][piece])
-            chosen[key].append([near[name] for name in ("time", "d", "z")])
+    columns: dict = {}
+    bounds = np.linspace(middle - LATTICE.rotation_sample_length / 2, middle + LATTICE.rotation_sample_length / 2, LATTICE.rotation_sample_pieces + 1)
+    for start, end in zip(bounds[:-1], bounds[1:]):   # all at once would be too many
+        for key, records in scanner_runs(survey.window(road, start, end).records):
+            if key[0] == number:
+                columns.setdefault(key, []).append([np.array(records[name]) for name in ("time", "d", "z")])
     windows = {}
-    for key, parts in chosen.items():
-        time, d, z = (np.concatenate(column) for column in zip(*parts))
-        order = time_order(time)
-        ordered = dict(time=time[order], d=d[order], z=z[order])
-        time, phasor = _phasors(survey, number, ordered)
-        windows[key] = _RotationWindow(time, phasor, ordered["d"] * COORDINATE_SCALE)
+    for key, parts in columns.items():
+        near = _near_in_time([time for time, *_ in parts])
+        if sum(map(len, near)) >= LATTICE.min_window_points:
+            time, d, z = (np.concatenate([values[rows] for values, rows in zip(column, near)]) for column in zip(*parts))
+            order = time_order(time)
+            time, phasor = _phasors(survey, number, dict(time=time[order], d=d[order], z=z[order]))
+            windows[key] = _RotationWindow(time, phasor, d[order] * COORDINATE_SCALE)
     return windows
 
 
@@ -198,14 +188,14 @@ def time_order(time: np.ndarray) -> np.ndarray:
 
 
 def _rotation(windows, given):
-    """(frequency, peak, "angle" or "gap") of one scanner's windows, None where there is no lattice."""
+    """(frequency, "angle" or "gap") of one scanner's windows, None where there is no lattice."""
     frequency, peak = strongest_rotation([rotation_spectrum(w.time, w.phasor) for w in windows], given)
     if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
-        return frequency, peak, "angle"
+        return frequency, "angle"
     times_only = [rotation_spectrum(w.time, np.ones(len(w.time), complex)) for w in windows]
     frequency, peak = strongest_rotation(times_only, given, signed=False)
     if peak >= LATTICE.min_rotation_peak and _on_lines(windows):
-        return frequency, peak, "gap"
+        return frequency, "gap"
     return None
 
 
@@ -245,36 +235,36 @@ def _why_none(windows):
     return TOO_THIN if step >= LATTICE.max_point_step else NO_TURNING
 
 
-def _mirror_phases(survey, road, rotations, samples, progress):
-    """The mirror phases of the scanners whose frequency is known, from the points of a whole road."""
+def _mirror_phases(survey, road, rotations, samples, until):
+    """Part of a work: the mirror phases of the scanners whose frequency is known, from the points of a whole road."""
     if not rotations:
         return {}
     bins = _bins_of(survey, rotations)
-    stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
-    mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
+    stride = min(_stride(samples[key], frequency) for key, (frequency, _) in rotations.items())
+    mounts = {key: _mounting(samples[key], frequency) for key, (frequency, origin) in rotations.items() if origin == "angle"}
 
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
     phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
-        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch))
-    for gathered in survey.executor.passing().run_together(phase, list(stretches), LATTICE.stretches_together, progress):
+        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch), listed=LATTICE.stretches_together)
+    for gathered in (yield Asked(phase, stretches, until)):
         for key, sums in gathered:
             bins[key].add(*sums)
     phases = {}
-    for key, (frequency, peak, origin) in rotations.items():
+    for key, (frequency, origin) in rotations.items():
         b = bins[key]
-        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
+        mirror = _mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, origin=origin)
         if mirror is not None:
             phases[key] = replace(mirror, **_line_properties(samples[key], mirror))
     return phases
 
 
 def _bins_of(survey, rotations):
-    return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
+    return {key: _PhasorBins(survey.frame.passes[key[0]], LATTICE.turns_per_bin / abs(frequency)) for key, (frequency, _) in rotations.items()}
 
 
-def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, float, str]],
+def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride: int, rotations: dict[tuple[int, int], tuple[float, str]],
                          mounts: dict[tuple[int, int], np.ndarray]) -> list[list[tuple[tuple[int, int], tuple[Any, ...]]]]:
     """The phase that sums phasors over time: of each stretch of `phase_stretch`, by its number, those of each scanner, as of `_PhasorBins`."""
     bins, result = _bins_of(survey, rotations), []
@@ -287,7 +277,7 @@ def _phasors_of_stretches(survey: Any, numbers: Sequence[int], road: int, stride
 
 def _phasor_sums(survey, number, records, rotation, mounting, bins):
     """Sums over the bins of the phasors of one scanner's records, relative to its even rotation."""
-    frequency, _, origin = rotation
+    frequency, origin = rotation
     time, phasor = _phasors(survey, number, records)
     # With the gap of the sky in every turn, the points' times alone have a mean phase half a turn from the zenith.
     phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounting[_direction_number(phasor)]
@@ -387,7 +377,6 @@ class MirrorPhase:
     pulse: float = 0.0   # usual share of a turn between neighbouring points of a line
     spacing: int = 1   # turns between neighbouring lines, more than 1 where lines were left out of the cloud
     leftward: bool = False   # whether the lines run to the left, offset increasing with time
-    peak: float = 1.0   # 0 to 1, how well the points fit this frequency
     origin: str = "angle"   # "angle" where the phase follows from the points' angles, "gap" where it follows from gaps in their times
 
     def turns_at(self, time: np.ndarray) -> np.ndarray:

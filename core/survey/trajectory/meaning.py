@@ -11,27 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.text_table import read_number_table
+from ...io.text_table import finite_or_nan, read_number_table
 from ...lazy import pyproj
 from ..weights import TRAJECTORY
 from .columns import ROLES, candidates_by_role, listed
-from .table_columns import TableColumn, first_row, is_record, titled_columns, with_week
-from .time_systems import (
-    ADJUSTED_OFFSET,
-    SECONDS_PER_DAY,
-    SECONDS_PER_WEEK,
-    UNIX_EPOCH,
-    angles_of,
-    clock_times,
-    counted_days,
-    hemisphere_signs,
-    hold_angles,
-    is_to_come,
-    leap_seconds,
-    unix_time_found,
-    whole_minutes,
-    whole_seconds,
-)
+from .table_columns import TableColumn, angle_of, first_row, is_record, titled_columns, with_week
+from .time_systems import UNIX_EPOCH, clock_times, counted_days, is_to_come, leap_seconds, time_system_by_size, unix_time_found
 from .trajectory import Trajectory
 from .unnamed_columns import columns_from_numbers, rough_metres
 
@@ -122,47 +107,16 @@ def values_by_role(columns: Sequence[TableColumn], meaning: _Meaning, label: str
     """
     column_of = meaning.place
     values = {role: columns[k].in_metres if role in "xyz" else columns[k].values for role, k in column_of.items() if role in ROLES[1:]}
-    values.update({role: _angle(columns, column_of[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in column_of})
+    values.update({role: angle_of(columns, column_of[role], most) for role, most in (("lon", 180.0), ("lat", 90.0)) if role in column_of})
     if not {"lon", "x"} & set(values) and set(FROM_CENTRE) <= set(column_of):
-        values.update(_from_the_centre(*(columns[column_of[role]].values for role in FROM_CENTRE)))
+        transformer = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True)
+        values.update(zip(("lon", "lat", "z"), map(finite_or_nan, transformer.transform(*(columns[column_of[role]].values for role in FROM_CENTRE)))))
         notes.append(f"{label} gives earth-centred coordinates; they were converted to longitude, latitude and height above the ellipsoid.")
     if "time" in column_of:
         values["time"] = _time(columns, meaning, label, notes, doubts)
     else:
         doubts += _like_time(columns, set(column_of.values()), label)
     return values
-
-
-def _angle(columns, k, most):
-    """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
-    column = columns[k]
-    if not column.holds_texts and column.unit.name == "packed minutes":
-        return whole_minutes(column.values)
-    if not column.holds_texts and column.unit.name == "packed seconds":
-        return whole_minutes(whole_seconds(column.values * column.unit.factor))
-    values = _degrees(column)
-    sides = [hemisphere_signs(column.written()) for column in (*columns[k + 1:k + 2], *columns[max(k - 1, 0):k]) if column.holds_texts]
-    signs = next((signs for signs in sides if signs is not None), None)
-    if signs is None:
-        return values
-    packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
-    return np.where(signs < 0, -1.0, 1.0) * np.abs(whole_minutes(values) if packed else values)
-
-
-def _degrees(column):
-    """(N,) degrees of a column of angles, without the hemisphere beside it."""
-    unit, values = column.unit, column.values
-    if column.holds_texts:
-        return angles_of(column.written()) if hold_angles(column.written()) else values
-    if unit.name == "radians":
-        # np.degrees gives the last bit that a product would not
-        return np.degrees(values) if unit.factor == 1.0 else values * np.degrees(unit.factor)
-    return values * unit.factor if unit.name == "degrees" else values
-
-
-def _from_the_centre(x, y, z):
-    lon, lat, height = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True).transform(x, y, z)
-    return {role: np.where(np.isfinite(values), values, np.nan) for role, values in (("lon", lon), ("lat", lat), ("z", height))}
 
 
 def _time(columns, meaning, label, notes, doubts):
@@ -415,19 +369,6 @@ def _meaning_by_numbers(columns, unmatched, path):
     column_of = {"time": clocks[0], **column_of} if clocks else column_of
     listing = ", ".join(f"{role} in column {column_of[role] + 1}" for role in (*ROLES, "lon", "lat") if role in column_of)
     return _Meaning(column_of, (f"{path.name} has no line of names; recognised by the numbers: {listing}.",))
-
-
-def time_system_by_size(time: np.ndarray) -> str:
-    """What (N,) times most likely count, by their size alone: gps, adjusted, week or day; "" where that is not clear."""
-    first, last = float(np.nanmin(time)), float(np.nanmax(time))
-    earliest, latest = TRAJECTORY.first_gps_seconds, TRAJECTORY.last_gps_seconds
-    if earliest < first and last < latest:
-        return "gps"
-    if earliest - ADJUSTED_OFFSET < first < 0 or SECONDS_PER_WEEK < first and last < latest - ADJUSTED_OFFSET:
-        return "adjusted"
-    if 0 <= first and SECONDS_PER_DAY < last <= SECONDS_PER_WEEK:
-        return "week"
-    return ""
 
 
 @dataclass(frozen=True)

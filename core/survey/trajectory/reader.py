@@ -296,11 +296,8 @@ def _is_sbet(path):
 
 def _read_sbet(path, crs):
     """SBET: little-endian records of 17 doubles, angles in radians, heading in the wander frame."""
-    data = np.fromfile(path, "<f8")
-    rows = data[:len(data) // SBET_DOUBLES * SBET_DOUBLES].reshape(-1, SBET_DOUBLES)
-    notes = []
-    if path.stat().st_size % (SBET_DOUBLES * 8):
-        notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
+    rows = _records(path, SBET_DOUBLES)
+    notes = [f"{path.name} ends within a record; the last, incomplete one was left out."] if path.stat().st_size % (SBET_DOUBLES * 8) else []
     parsed = parse_crs(crs)
     if parsed is not None and not horizontal_part(parsed).is_geographic:
         raise RoadExtractionError(f"{path} is an Applanix SBET file, which is geographic, but {horizontal_part(parsed).name} was given as its CRS. "
@@ -327,18 +324,19 @@ def _accuracy_across(sbet: Path, time: np.ndarray, x: np.ndarray, y: np.ndarray)
     """
     try:
         path = _beside(sbet)
-        rows = None if path is None else _records(path)
+        rows = _records(path, SMRMSG_DOUBLES) if path else np.empty((0, SMRMSG_DOUBLES))
     except OSError:   # what may not be read was not given
-        return 0.0, ""
+        path = None
     if path is None:
         return 0.0, ""
-    if rows is None or not (rows[0, 0] < time[-1] and time[0] < rows[-1, 0]):
-        return 0.0, f"{path.name} is no accuracy file of {sbet.name} and is not used."
+    unused = 0.0, f"{path.name} is no accuracy file of {sbet.name} and is not used."
+    if path.stat().st_size // 8 != rows.size or not _tell_accuracy(rows, time):
+        return unused
     east, north = np.diff(x) * np.cos(np.radians(y[:-1])), np.diff(y)
     step, middle = np.hypot(east, north), (time[1:] + time[:-1]) / 2
     driven = (step > 0) & (middle >= rows[0, 0]) & (middle <= rows[-1, 0])
     if not driven.any():
-        return 0.0, f"{path.name} is no accuracy file of {sbet.name} and is not used."
+        return unused
     step, east, north, middle = (values[driven] for values in (step, east, north, middle))
     rms_north, rms_east = (np.interp(middle, rows[:, 0], rows[:, k]) for k in (1, 2))
     # across the way; how the errors in both directions hang together is not in the file
@@ -354,13 +352,14 @@ def _beside(sbet):
     return next((path for path in sorted(sbet.parent.iterdir()) if path.name.lower() == target and path.is_file()), None) if target else None
 
 
-def _records(path):
-    """(N, 10) float64; None where the file holds something else."""
-    data = np.fromfile(path, "<f8")
-    rows = data[:len(data) // SMRMSG_DOUBLES * SMRMSG_DOUBLES].reshape(-1, SMRMSG_DOUBLES)
-    if len(rows) < 2 or len(data) != rows.size:
-        return None
+def _tell_accuracy(rows, time):
+    """Whether (N, 10) numbers are those of an accuracy file for some of the times."""
     with np.errstate(invalid="ignore"):
-        rms = rows[:, 1:4]
-        usable = np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and ((rms >= 0) & (rms < TRAJECTORY.worst_accuracy)).all()
-    return rows if usable else None
+        return len(rows) > 1 and np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and rows[0, 0] < time[-1] and time[0] < rows[-1, 0] \
+            and ((rows[:, 1:4] >= 0) & (rows[:, 1:4] < TRAJECTORY.worst_accuracy)).all()
+
+
+def _records(path, doubles):
+    """(N, doubles) float64, the whole records of a file."""
+    data = np.fromfile(path, "<f8")
+    return data[:len(data) // doubles * doubles].reshape(-1, doubles)

@@ -25,7 +25,6 @@ LEFT_SAGITTA = TRAJECTORY.max_sagitta / 5   # derived: m that the curved traject
 LEAST_RADIUS = 6.4      # source: m of the middle of a car that turns as sharply as it can (AASHTO, design vehicle P, 21 ft)
 MIN_SPACING = float(np.sqrt(8 * LEAST_RADIUS * TRAJECTORY.max_sagitta))   # derived: m between vertices that miss such a bend by that
 SHARPEST_TURN = np.radians(90.0) / 2   # derived: from vertex to vertex; every second one, which tells the error, then turns by a right angle
-MIN_SPLINE_ROWS = 3     # derived: vertices with a turn between them
 SPLINE_ORDER_SHARE = 1.0 / 16.0   # derived: of the error with every second vertex that is left with all, (1/2)^4
 MIN_CUBIC_ROWS = 7      # derived: in `noise_time`; a cubic through four of them leaves three to tell the noise by
 # derived: m, root mean square of a motion with that jerk that turns once in `noise_time`; a cubic over that time leaves most of it
@@ -82,21 +81,17 @@ def _curved_track(trajectory: Trajectory) -> _TrackShape:
     pieces, worst, sigma, unsafe = [], (0.0, 0.0, 0), 0.0, 0
     for piece in _pieces(trajectory):
         rows = trajectory.rows(piece)
-        if len(rows) < MIN_SPLINE_ROWS:
-            pieces.append(rows)
-            continue
+        pieces.append(rows)
         sagitta, turn, length = _sagittas(rows)
         far = (sagitta > TRAJECTORY.max_sagitta) & (length > MIN_SPACING)
         if not far.any():
-            pieces.append(rows)
             continue
         k = int(np.argmax(np.where(far, sagitta, 0.0)))
         worst = max(worst, (float(sagitta[k]), float(length[k]), piece.start + k))
         sharp = far & (turn > SHARPEST_TURN)
         unsafe += np.count_nonzero(sharp)
-        curved, off = _through(rows, np.where(far, np.ceil(np.sqrt(sagitta / LEFT_SAGITTA)), 1).astype(int))
+        pieces[-1], off = _through(rows, np.where(far, np.ceil(np.sqrt(sagitta / LEFT_SAGITTA)), 1).astype(int))
         sigma = max(sigma, off, float(sagitta[sharp].max(initial=0.0)) / 2)
-        pieces.append(curved)
     if not worst[0]:
         return _TrackShape(trajectory)
     names = ("time", "x", "y", "z", "roll", "pitch", "heading")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 
 import numpy as np
@@ -15,7 +15,7 @@ from ...common.errors import RoadExtractionError
 from ...io.text_table import NumberTable, as_number, finite_or_nan
 from ..weights import TRAJECTORY
 from .columns import Unit, candidates_by_role, listed, split_header, unit_named, unit_of_name, units_above
-from .time_systems import SECONDS_PER_WEEK, degrees_of, hemisphere_signs, hold_times, whole_minutes
+from .time_systems import SECONDS_PER_WEEK, are_mostly, hold_times
 
 FIRST_WHOLE_WEEK, LAST_WEEK = 1024.0, 4096.0  # source: weeks since 1980 (IS-GPS-200); smaller ones begin anew after 1024, as old receivers do
 
@@ -29,6 +29,12 @@ class TableColumn:
     unit: Unit = field(default=Unit())
     written: Callable[[], Sequence[str]] = list   # gives the (N,) texts as they stand in the table
     first: str = ""   # the first of them
+
+    @classmethod
+    def of(cls, title: str, texts: Sequence[str], unit: Unit = Unit(), values: np.ndarray | None = None) -> TableColumn:
+        """Of (N,) texts; their values are by default the numbers that they hold."""
+        return cls(title, np.array([as_number(text) for text in texts]) if values is None else values, unit, lambda: texts,
+                   next(filter(None, texts), ""))
 
     @property
     def is_text(self) -> bool:
@@ -88,9 +94,8 @@ def columns_of_rows(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> 
     columns = []
     for k, title in enumerate(titles):
         cells = [row[k] for row in rows]
-        texts = ["" if value is None else str(value) for value in cells]
         numbers = finite_or_nan(np.array([as_number(value) for value in cells], float))
-        columns.append(TableColumn(title, numbers, unit_of_name(title), texts.copy, next((text for text in texts if text), "")))
+        columns.append(TableColumn.of(title, ["" if value is None else str(value) for value in cells], unit_of_name(title), numbers))
     return columns
 
 
@@ -200,11 +205,89 @@ def _joined(name, parts, kind, unit):
     if kind == "week":
         values = with_week(parts[1].values, values)
     elif kind == "angle":
-        values, unit = degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - len(parts))), Unit("degrees")
+        values, unit = _degrees_of(*(part.values for part in parts), *[np.zeros(len(values))] * (3 - len(parts))), Unit("degrees")
     elif kind == "time":
         values = np.full(len(values), np.nan)
     written = parts[0].written if len(parts) == 1 else lambda: [" ".join(texts) for texts in zip(*(part.written() for part in parts))]
     return TableColumn(name, values, unit, written, " ".join(part.first for part in parts))
+
+
+# Angles that are written as text or packed into one number: degrees with minutes and seconds, hemispheres.
+
+ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*"
+                   r"(?:(?P<minutes>\d{1,2}(?:[.,]\d*)?)\s*['′’m:\s]?\s*)?(?:(?P<seconds>\d{1,2}(?:[.,]\d*)?)\s*(?:''|[\"″”s])?\s*)?"
+                   r"(?P<after>[NSEW])?$", re.IGNORECASE)
+
+
+def _hold_angles(texts: Sequence[str]) -> bool:
+    """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
+    return are_mostly(texts, lambda text: (match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
+
+
+def _angles_of(texts: Sequence[str]) -> np.ndarray:
+    """(N,) degrees of texts such as 48°12'30.5"N, 48 12 30.5, N 48° 12.5' or 48.2085°; south and west negative, NaN where a text is none."""
+    degrees = np.full(len(texts), np.nan)
+    for row, text in enumerate(texts):
+        match = ANGLE.match(text.strip())
+        if match:
+            parts = [float((match[name] or "0").replace(",", ".")) for name in ("degrees", "minutes", "seconds")]
+            negative = match["sign"] == "-" or (match["before"] or match["after"] or "").upper() in ("S", "W")
+            degrees[row] = _degrees_of(*parts) * (-1.0 if negative else 1.0)
+    return degrees
+
+
+def _degrees_of(degrees: Any, minutes: Any, seconds: Any) -> np.ndarray:
+    """(N,) degrees of degrees, minutes and seconds; the sign is that of the degrees, also where these are -0."""
+    return np.copysign(np.abs(degrees) + np.asarray(minutes) / 60.0 + np.asarray(seconds) / 3600.0, degrees)
+
+
+def _hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
+    """(N,) 1 or -1 of a column of N, S, E and W; None for other texts."""
+    letters = [text.strip().upper() for text in texts]
+    if not any(letters) or not set(letters) <= {"N", "S", "E", "W", ""}:
+        return None
+    return np.array([-1.0 if letter in ("S", "W") else 1.0 for letter in letters])
+
+
+def _whole_minutes(values: np.ndarray) -> np.ndarray:
+    """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
+    size = np.where(np.isfinite(values), np.abs(values), np.nan)
+    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+
+
+def _whole_seconds(values: np.ndarray) -> np.ndarray:
+    """(N,) numbers ddmm.mmmm of numbers in which degrees, minutes and seconds are written together, ddmmss.ss."""
+    size = np.abs(values)
+    # 1e-7 s are 3 µm on the ground, and more than what doubles lose in 1800000
+    size = np.where(np.isfinite(size), np.round(size, 7), np.nan)
+    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+
+
+def angle_of(columns: Sequence[TableColumn], k: int, most: float) -> np.ndarray:
+    """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
+    column = columns[k]
+    if not column.holds_texts and column.unit.name == "packed minutes":
+        return _whole_minutes(column.values)
+    if not column.holds_texts and column.unit.name == "packed seconds":
+        return _whole_minutes(_whole_seconds(column.values * column.unit.factor))
+    values = _degrees(column)
+    sides = [_hemisphere_signs(column.written()) for column in (*columns[k + 1:k + 2], *columns[max(k - 1, 0):k]) if column.holds_texts]
+    signs = next((signs for signs in sides if signs is not None), None)
+    if signs is None:
+        return values
+    packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(_whole_minutes(values) if packed else values)
+
+
+def _degrees(column):
+    """(N,) degrees of a column of angles, without the hemisphere beside it."""
+    unit, values = column.unit, column.values
+    if column.holds_texts:
+        return _angles_of(column.written()) if _hold_angles(column.written()) else values
+    if unit.name == "radians":
+        # np.degrees gives the last bit that a product would not
+        return np.degrees(values) if unit.factor == 1.0 else values * np.degrees(unit.factor)
+    return values * unit.factor if unit.name == "degrees" else values
 
 
 # What receivers and telephones keep: sentences of NMEA 0183 and NovAtel's ASCII logs, and tracks in GPX and KML.
@@ -284,13 +367,12 @@ def _place_columns(text, number):
     bad = np.array([value in NO_SOLUTION for value in text.get("status", [""] * rows)]) | (number.get("quality", np.ones(rows)) == 0)
     for axis in ("lat", "lon"):
         if f"{axis}_side" in text:
-            signs = hemisphere_signs(text[f"{axis}_side"])
-            number[axis] = whole_minutes(number[axis]) * (1.0 if signs is None else signs)
+            signs = _hemisphere_signs(text[f"{axis}_side"])
+            number[axis] = _whole_minutes(number[axis]) * (1.0 if signs is None else signs)
         number[axis] = np.where(bad, np.nan, number[axis])
     if "geoid" in number and np.isfinite(number["geoid"]).any():
         number["z"] = number["z"] + number["geoid"]
-    return [TableColumn(title, number[what], Unit("degrees" if what in ("lat", "lon", "roll", "pitch", "heading") else "metres"),
-                        lambda what=what: text[what], text[what][0])
+    return [TableColumn.of(title, text[what], Unit("metres" if what == "z" else "degrees"), number[what])
             for what, title in (("lat", "latitude"), ("lon", "longitude"), ("z", "ellipsoidal height" if "geoid" in number else "height"),
                                 ("roll", "roll"), ("pitch", "pitch"), ("heading", "heading")) if what in number]
 
@@ -299,7 +381,7 @@ def _clock_column(days, clocks):
     """The time of sentences with hhmmss.ss of UTC; those before the first date are of the same day, or of no known one."""
     first = next((day for day in days if day), "")
     times = [f"{day or first} {clock[:2]}:{clock[2:4]}:{clock[4:]}".strip() if re.match(r"\d{6}", clock) else "" for day, clock in zip(days, clocks)]
-    return TableColumn("UTC", np.full(len(times), np.nan), Unit(), lambda: times, next((time for time in times if time), ""))
+    return TableColumn.of("UTC", times, values=np.full(len(times), np.nan))
 
 
 def _gps_column(rows, number):
@@ -331,14 +413,9 @@ def _read_track(path: Path) -> list[TableColumn]:
     rows = reader.rows[kind]
     if kind == "coord":
         rows = [[*row[:3], time] for row, time in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
-    columns = [_column_of_track(rows, k, title, unit)
-               for k, (title, unit) in enumerate((("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")))]
+    columns = [TableColumn.of(title, texts, Unit(unit)) for (title, unit), texts in zip(
+        (("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")), zip(*rows))]
     return columns if columns[3].first else columns[:3]
-
-
-def _column_of_track(rows, k, title, unit):
-    texts = [row[k] for row in rows]
-    return TableColumn(title, np.array([as_number(text) for text in texts]), Unit(unit), lambda: texts, next((text for text in texts if text), ""))
 
 
 class _TrackReader:

@@ -14,15 +14,12 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ..weights import TRAJECTORY
 
-# Times and angles that are written as text: dates and clocks, degrees with minutes and seconds, hemispheres.
+# Times that are written as text: dates and clocks.
 
 _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}|\d{8})"
 _CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2}(?:[.,]\d*)?))?\s*(?P<half>[ap]\.?m\.?)?"
 _ZONE = r"(?P<zone>Z|UTC|GMT|GPST?|[+-]\d{2}:?\d{2})?"
 TIME = re.compile(rf"(?:{_DATE}(?:\s*[T ,]\s*|$))?(?:{_CLOCK})?\s*{_ZONE}$", re.IGNORECASE)
-ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*"
-                   r"(?:(?P<minutes>\d{1,2}(?:[.,]\d*)?)\s*['′’m:\s]?\s*)?(?:(?P<seconds>\d{1,2}(?:[.,]\d*)?)\s*(?:''|[\"″”s])?\s*)?"
-                   r"(?P<after>[NSEW])?$", re.IGNORECASE)
 COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?!\d)")                       # 20211013T234640
 MONTH_NAME = re.compile(r"(\d{1,2})[-/. ](jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?[-/., ]+(\d{4})", re.IGNORECASE)
 YEAR_SIGN = re.compile(r"(\d{4}) ?年 ?(\d{1,2}) ?月 ?(\d{1,2}) ?日")               # 2021年10月13日
@@ -56,10 +53,13 @@ class ClockTimes:
 
 def hold_times(texts: Sequence[str]) -> bool:
     """Whether most texts of a column are clock times, with dates or without, or dates."""
-    sample = [text for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    matches = [_match(text) for text in sample]
-    times = [match for match in matches if match and (match["hour"] or match["date"] and not match["date"].isdigit())]
-    return bool(sample) and len(times) >= TRAJECTORY.most_of_texts * len(sample)
+    return are_mostly(texts, lambda text: (match := _match(text)) and (match["hour"] or match["date"] and not match["date"].isdigit()))
+
+
+def are_mostly(texts: Sequence[str], say: Callable[[str], Any]) -> bool:
+    """Whether most texts of a column that are no blanks are such as a function tells."""
+    sample = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
+    return bool(sample) and sum(map(bool, map(say, sample))) >= TRAJECTORY.most_of_texts * len(sample)
 
 
 def _match(text):
@@ -167,52 +167,6 @@ def leap_seconds(seconds: np.ndarray) -> np.ndarray:
     return np.searchsorted(days, seconds, side="right").astype(float)
 
 
-def hold_angles(texts: Sequence[str]) -> bool:
-    """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
-    sample = [text.strip() for text in texts if text.strip()][:TRAJECTORY.texts_looked_at]
-    return bool(sample) and sum(bool((match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
-                                for text in sample) >= TRAJECTORY.most_of_texts * len(sample)
-
-
-def angles_of(texts: Sequence[str]) -> np.ndarray:
-    """(N,) degrees of texts such as 48°12'30.5"N, 48 12 30.5, N 48° 12.5' or 48.2085°; south and west negative, NaN where a text is none."""
-    degrees = np.full(len(texts), np.nan)
-    for row, text in enumerate(texts):
-        match = ANGLE.match(text.strip())
-        if match:
-            parts = [float((match[name] or "0").replace(",", ".")) for name in ("degrees", "minutes", "seconds")]
-            negative = match["sign"] == "-" or (match["before"] or match["after"] or "").upper() in ("S", "W")
-            degrees[row] = degrees_of(*parts) * (-1.0 if negative else 1.0)
-    return degrees
-
-
-def degrees_of(degrees: Any, minutes: Any, seconds: Any) -> np.ndarray:
-    """(N,) degrees of degrees, minutes and seconds; the sign is that of the degrees, also where these are -0."""
-    return np.copysign(np.abs(degrees) + np.asarray(minutes) / 60.0 + np.asarray(seconds) / 3600.0, degrees)
-
-
-def hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
-    """(N,) 1 or -1 of a column of N, S, E and W; None for other texts."""
-    letters = [text.strip().upper() for text in texts]
-    if not any(letters) or not set(letters) <= {"N", "S", "E", "W", ""}:
-        return None
-    return np.array([-1.0 if letter in ("S", "W") else 1.0 for letter in letters])
-
-
-def whole_minutes(values: np.ndarray) -> np.ndarray:
-    """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
-    size = np.where(np.isfinite(values), np.abs(values), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
-
-
-def whole_seconds(values: np.ndarray) -> np.ndarray:
-    """(N,) numbers ddmm.mmmm of numbers in which degrees, minutes and seconds are written together, ddmmss.ss."""
-    size = np.abs(values)
-    # 1e-7 s are 3 µm on the ground, and more than what doubles lose in 1800000
-    size = np.where(np.isfinite(size), np.round(size, 7), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
-
-
 ADJUSTED_OFFSET = 1e9  # source: s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
 TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
 TIME_SYSTEM_NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
@@ -240,9 +194,27 @@ def unwrap_time(time: np.ndarray) -> np.ndarray:
     return time
 
 
+def unwrap_week(time: np.ndarray) -> np.ndarray:
+    """Seconds of the week, continued beyond the end of the week where it ends during the scan; (N,)."""
+    return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
+
+
 def wrapped_week(span: tuple[float, float]) -> bool:
     """Whether a cloud's (first, last) gps_time in seconds shows that a GPS week ended during the drive."""
     return 0 <= span[0] and span[1] <= SECONDS_PER_WEEK * 1.001 and span[1] - span[0] > 0.75 * SECONDS_PER_WEEK
+
+
+def time_system_by_size(time: np.ndarray) -> str:
+    """What (N,) times most likely count, by their size alone: gps, adjusted, week or day; "" where that is not clear."""
+    first, last = float(np.nanmin(time)), float(np.nanmax(time))
+    earliest, latest = TRAJECTORY.first_gps_seconds, TRAJECTORY.last_gps_seconds
+    if earliest < first and last < latest:
+        return "gps"
+    if earliest - ADJUSTED_OFFSET < first < 0 or SECONDS_PER_WEEK < first and last < latest - ADJUSTED_OFFSET:
+        return "adjusted"
+    if 0 <= first and SECONDS_PER_DAY < last <= SECONDS_PER_WEEK:
+        return "week"
+    return ""
 
 
 def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = "automatic", adjusted: bool = True) -> tuple[float, str]:

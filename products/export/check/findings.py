@@ -13,7 +13,8 @@ import shapely
 
 from ....core.common.features import MAP_FINDINGS, Features
 
-FAULTS: dict[str, str] = dict(re.findall("(.+?): (.+)", Path(__file__).with_name("faults.txt").read_text(encoding="utf-8")))   # name: meaning
+FAULTS, _WORDS = (dict(re.findall("(.+?): (.+)", Path(__file__).with_name(name).read_text(encoding="utf-8"))) for name in ("faults.txt", "words.txt"))
+WORDS = {what: tuple(words.split(", ")) for what, words in _WORDS.items()}   # that the formats have; of FAULTS the meanings
 
 
 class Finding(NamedTuple):

@@ -17,7 +17,7 @@ import shapely
 from ....core.common.progress import Progress
 from ..lanelet_map import NEVER_DRIVEN, Lanelet, LaneletMap, LaneletNetwork, Way, kmh, length_of_tag, same_way
 from ..sources import LEAST_CURB, wrapped
-from .findings import Findings, metres
+from .findings import WORDS, Findings, metres
 
 LEAST_LANE_WIDTH, MOST_LANE_WIDTH = 0.5, 30.0   # m: beyond them a border belongs to another lane; areas of junctions are wide
 NEAR_NODES = 0.001        # m between two nodes of a way that are one place
@@ -31,14 +31,7 @@ LONGEST_FORK = 2.0          # m near an end of a border within which another tha
 JOIN_ANGLE = 0.7          # rad between lanelets that may follow each other
 USUAL_SHARE = 0.9         # of the lanelets, which show the habit of a map of drawing borders
 LEAST_HABIT = 10          # lanelets that are a habit
-WAY_TYPES = ("line_thin", "line_thick", "curbstone", "virtual", "road_border", "guard_rail", "wall", "fence", "stop_line", "pedestrian_marking",
-             "zebra_marking", "zebra", "bike_marking", "keepout", "arrow", "symbol", "traffic_sign", "traffic_light", "light_bulbs", "gate", "door",
-             "trajectory", "rail", "pole", "post", "building", "centerline", "pedestrian_path", "jersey_barrier", "marking", "zig-zag", "structure")
-LINE_SUBTYPES = ("solid", "solid_solid", "dashed", "dashed_solid", "solid_dashed", "dashed_dashed", "hatched")
-SUBTYPES = {"line_thin": LINE_SUBTYPES, "line_thick": LINE_SUBTYPES, "curbstone": ("high", "low", "lowered", "rolled")}   # type of a way -> its own
-LANELET_SUBTYPES = ("road", "highway", "play_street", "emergency_lane", "bus_lane", "bicycle_lane", "exit", "walkway", "shared_walkway", "crosswalk",
-                    "stairs", "road_shoulder", "parking", "pedestrian_lane")
-LOCATIONS = ("urban", "nonurban", "private")
+SUBTYPES = {"line_thin": WORDS["line"], "line_thick": WORDS["line"], "curbstone": WORDS["curbstone"]}   # type of a way -> its own
 
 
 def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progress: Progress = Progress()) -> Findings:
@@ -115,12 +108,14 @@ class _LaneletCheck:
         self._tags(way, name, place)
 
     def _tags(self, way, name, place):
-        for text in _way_tags(way):
-            self.findings.add("way tag", name, text, place)
+        for key, value in way.tags.items():
+            is_change = key == "lane_change" or key.startswith("lane_change:")
+            if is_change and value not in YES_OR_NO or key in ("width", "height") and not 0 <= length_of_tag(value) < 1000:
+                self.findings.add("way tag", name, f"{key} is {value!r}.", place)
         kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
-        if way.id in self.borders and kind in NO_BORDERS:
+        if way.id in self.borders and kind in WORDS["way that is no border"]:
             self.findings.add("way type", name, f"It is the border of a lanelet and a {kind}.", place)
-        if kind not in WAY_TYPES and (kind or way.id in self.borders):
+        if kind not in WORDS["way"] and (kind or way.id in self.borders):
             self.findings.add("way type", name, f"The type is {kind!r}.", place)
         elif subtype not in SUBTYPES.get(kind, (subtype,)):
             self.findings.add("way subtype", name, f"The subtype of the {kind} is {subtype!r}.", place)
@@ -300,34 +295,16 @@ class _LaneletCheck:
 YES, NO = {"yes", "true", "1"}, {"no", "false", "0"}
 YES_OR_NO = YES | NO
 MOTOR = re.compile("vehicle(?!:emergency$)")   # participants who have no way where others walk
-NO_BORDERS = ("stop_line", "traffic_sign", "traffic_light", "light_bulbs", "arrow", "symbol", "pole", "post", "centerline", "trajectory", "building")
-VEHICLES = ("bus", "car", "car:electric", "car:combustion", "truck", "motorcycle", "taxi", "emergency")
-KNOWN_PARTICIPANTS = ("vehicle", *(f"vehicle:{kind}" for kind in VEHICLES), "bicycle", "pedestrian", "train")
 # kind of a rule -> roles of which it needs at least one member; tags of which one does as well
-RULES = {
-    "traffic_light": (("refers",), ()), "traffic_sign": (("refers",), ()), "speed_limit": (("refers",), ("sign_type",)),
-    "right_of_way": (("right_of_way", "yield"), ()), "all_way_stop": (("yield",), ()), "crosswalk": (("refers",), ()),
-    "no_stopping_area": (("refers",), ()), "no_parking_area": (("refers",), ()), "detection_area": (("refers",), ()),
-    "road_marking": (("refers",), ()), "speed_bump": (("refers",), ()), "virtual_traffic_light": (("refers",), ()),
-    "bus_stop_area": (("refers",), ()), "roundabout": ((), ()),
-}
-RULE_ROLES = ("refers", "ref_line", "cancels", "cancel_line", "right_of_way", "yield", "light_bulbs", "crosswalk_polygon", "start_line", "end_line",
-         "lanelet", "")
-
-
-def _way_tags(way: Way) -> Iterator[str]:
-    """Sentences on tags of a way whose values no reader knows."""
-    for key, value in way.tags.items():
-        if key == "lane_change" or key.startswith("lane_change:"):
-            if value not in YES_OR_NO:
-                yield f"{key} is {value!r}."
-        elif key in ("width", "height") and not 0 <= length_of_tag(value) < 1000:
-            yield f"{key} is {value!r}."
+RULES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    **dict.fromkeys(WORDS["rule about members"], (("refers",), ())),
+    "speed_limit": (("refers",), ("sign_type",)), "right_of_way": (("right_of_way", "yield"), ()), "all_way_stop": (("yield",), ()),
+    "roundabout": ((), ())}
 
 
 def _lanelet_tags(tags: Mapping[str, str]) -> Iterator[str]:
     """Sentences on tags of a lanelet that are missing or have values that no reader knows."""
-    for key, allowed in (("subtype", LANELET_SUBTYPES), ("location", LOCATIONS), ("one_way", YES_OR_NO)):
+    for key, allowed in (("subtype", WORDS["lanelet"]), ("location", WORDS["location"]), ("one_way", YES_OR_NO)):
         if (key in tags or key == "subtype") and tags.get(key) not in allowed:
             yield f"{key} is {tags.get(key, '')!r}."
     yield from _participant_tags(tags, tags.get("subtype") in NEVER_DRIVEN)
@@ -339,7 +316,7 @@ def _participant_tags(tags, walked):
     """Sentences on who may use a lanelet; `walked`: whether it is made for those on foot."""
     participants = {key[len("participant:"):]: value for key, value in tags.items() if key.startswith("participant:")}
     for name, value in participants.items():
-        if name not in KNOWN_PARTICIPANTS:
+        if name not in WORDS["participant"]:
             yield f"The participant {name!r} is not known."
         if value not in YES_OR_NO:
             yield f"participant:{name} is {value!r}."
@@ -359,7 +336,7 @@ def _rule(relation, used):
     if roles and not named.intersection(roles) and not relation.tags.keys() & {*tags}:
         yield f"A {subtype} needs {' or '.join([*map('a member {}'.format, roles), *map('a tag {}'.format, tags)])}."
     for role in relation.members:
-        if role not in RULE_ROLES:
+        if role not in WORDS["role"]:
             yield f"The role {role!r} is not known."
     if not used:
         yield "No lanelet obeys it."

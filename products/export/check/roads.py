@@ -15,11 +15,11 @@ import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.progress import Progress
-from ..opendrive.model import DRIVEN_TYPES, LINK_NAMES, MARK_TYPES, OPEN_END, ROAD_LANE_TYPES, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink
+from ..opendrive.model import DRIVEN_TYPES, LINK_NAMES, OPEN_END, LaneKey, LaneNetwork, MapRoad, OpenDriveMap, RoadLink
 from ..opendrive.xodr import GEOMETRIES
 from ..sources import SAME_LEVEL, metric_wkt, wrapped
 from ..xml_tree import XmlElement
-from .findings import Findings, metres
+from .findings import WORDS, Findings, metres
 
 MAX_GAP_IN_ROAD = 0.01       # m: simulators of wheels feel more
 MAX_KINK = 0.01              # rad between two geometries of one road
@@ -124,10 +124,10 @@ class _RoadCheck:
             self.areas.append((road, shapely.union_all(outlines)))
 
     def _lane(self, road, start, lane, name, length):
-        if lane.type not in ROAD_LANE_TYPES:
+        if lane.type not in WORDS["lane of OpenDRIVE"]:
             self.add("lane type", name, f"The type is {lane.type!r}.", road, start)
         for mark in lane.marks:
-            if mark.type not in MARK_TYPES:
+            if mark.type not in WORDS["road mark"]:
                 self.add("road mark type", name, f"The type is {mark.type!r}.", road, start + mark.s)
         if lane.id == 0 or lane.border:
             return
@@ -388,25 +388,18 @@ class _Allowed(NamedTuple):
 
 
 POSITIVE, NOT_NEGATIVE = _Allowed(least=0.0, itself=False), _Allowed(least=0.0)
-MARK_COLOURS = ("standard", "blue", "green", "red", "white", "yellow", "orange", "violet", "black")
-ROAD_TYPES = ("unknown", "rural", "motorway", "town", "lowSpeed", "pedestrian", "bicycle", "townExpressway", "townCollector", "townArterial",
-              "townPrivate", "townLocal", "townPlayStreet")
-OBJECT_TYPES = ("", "-1", "none", "obstacle", "car", "pole", "tree", "vegetation", "barrier", "building", "parkingSpace", "patch", "railing",
-                "trafficIsland", "crosswalk", "streetLamp", "gantry", "soundBarrier", "van", "bus", "trailer", "bike", "motorbike", "tram", "train",
-                "pedestrian", "wind", "roadMark", "roadSurface")
-ORIENTATIONS = ("+", "-", "none")
 # tag -> attribute -> what it may be; what is not stated has a default
 ATTRIBUTES = {
-    "type": {"type": _Allowed(ROAD_TYPES)},
+    "type": {"type": _Allowed(WORDS["road"])},
     "speed": {"unit": _Allowed(("m/s", "mph", "km/h")), "max": _Allowed(("no limit", "undefined"), 0.0)},
     "paramPoly3": {"pRange": _Allowed(("arcLength", "normalized"))},
-    "roadMark": {"color": _Allowed(MARK_COLOURS), "weight": _Allowed(("standard", "bold")),
+    "roadMark": {"color": _Allowed(WORDS["colour of a road mark"]), "weight": _Allowed(("standard", "bold")),
                  "laneChange": _Allowed(("increase", "decrease", "both", "none")), "width": NOT_NEGATIVE},
     "line": {"length": POSITIVE, "space": NOT_NEGATIVE, "width": NOT_NEGATIVE},
     # before 1.7 the sizes of objects are any numbers
-    "object": {"type": _Allowed(OBJECT_TYPES), "orientation": _Allowed(ORIENTATIONS), "length": POSITIVE._replace(since=7),
+    "object": {"type": _Allowed(WORDS["object"]), "orientation": _Allowed(WORDS["orientation"]), "length": POSITIVE._replace(since=7),
                "width": POSITIVE._replace(since=7), "height": NOT_NEGATIVE._replace(since=7), "radius": NOT_NEGATIVE._replace(since=7)},
-    "signal": {"orientation": _Allowed(ORIENTATIONS), "dynamic": _Allowed(("yes", "no")), "s": NOT_NEGATIVE},
+    "signal": {"orientation": _Allowed(WORDS["orientation"]), "dynamic": _Allowed(("yes", "no")), "s": NOT_NEGATIVE},
     "superelevation": {"a": _Allowed(least=-np.pi / 2, most=np.pi / 2)},
     "width": {"a": _Allowed(least=-1.0, most=50.0)},
 }

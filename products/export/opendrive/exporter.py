@@ -315,14 +315,6 @@ class _DraftRoad(NamedTuple):
     single: bool   # whether it is a way through a junction
 
 
-class _Place(NamedTuple):
-    """Where a cell is: road, section, lane."""
-
-    draft: int
-    section: int
-    lane: int
-
-
 class _Touch(NamedTuple):
     """A lane at a road's end and the lane that it touches at an end of another road."""
 
@@ -334,7 +326,8 @@ class _Touch(NamedTuple):
 
 def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
     """Fill in the links of lanes and roads, and the junctions; sentences on what OpenDRIVE cannot say."""
-    places = [(cell, _Place(k, j, number)) for k, draft in enumerate(drafts) for j, (part, ids) in enumerate(zip(draft.strip, draft.numbers))
+    # where cells are: (draft, section, lane)
+    places = [(cell, (k, j, number)) for k, draft in enumerate(drafts) for j, (part, ids) in enumerate(zip(draft.strip, draft.numbers))
               for cell, number in zip(part.cells, ids)]
     place_of = {id(cell): place for cell, place in places}
     touches: dict[tuple[int, str], list[_Touch]] = defaultdict(list)
@@ -352,16 +345,17 @@ def _link_roads(whole: OpenDriveMap, drafts: list[_DraftRoad]) -> list[str]:
 
 def _link(drafts, touches, here, end, there, other_end):
     """One touch: of lanes of neighbouring sections at once, of ends of roads for later."""
-    sections = drafts[here.draft].road.sections
-    beyond = here.section + STEP[end]
-    if here.draft == there.draft and there.section == beyond:
-        linked = sections[here.section].lanes[here.lane].links[end]
-        if there.lane not in linked:
-            linked.append(there.lane)
+    (draft, section, lane), (other, other_section, other_lane) = here, there
+    sections = drafts[draft].road.sections
+    beyond = section + STEP[end]
+    if draft == other and other_section == beyond:
+        linked = sections[section].lanes[lane].links[end]
+        if other_lane not in linked:
+            linked.append(other_lane)
     elif not 0 <= beyond < len(sections):
-        touch = _Touch(here.lane, there.draft, other_end, there.lane)
-        if touch not in touches[here.draft, end]:
-            touches[here.draft, end].append(touch)
+        touch = _Touch(lane, other, other_end, other_lane)
+        if touch not in touches[draft, end]:
+            touches[draft, end].append(touch)
 
 
 def _junctions(drafts, touches):

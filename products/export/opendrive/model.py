@@ -15,15 +15,10 @@ from ..sources import LEAST_CURB
 from ..xml_tree import XmlElement
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, PlanView
 
-ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
-                   "special1", "special2", "special3", "roadWorks", "tram", "rail", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus",
-                   "taxi", "HOV", "mwyEntry", "mwyExit", "curb", "walking", "slipLane", "shared")
 LINK_NAMES = {"start": "predecessor", "end": "successor"}   # an end of a road or lane -> its link there
 OPEN_END = "lanewright:open_end"   # userData of a driven lane at whose start or end, or both, the survey shows no lane to go on in
 DRIVEN_TYPES = ("driving", "bidirectional", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "bus", "taxi", "HOV", "mwyEntry", "mwyExit",
                 "slipLane", "stop")
-MARK_TYPES = ("none", "solid", "broken", "solid solid", "solid broken", "broken solid", "broken broken", "botts dots", "grass", "curb", "custom",
-              "edge")
 
 
 @dataclass
@@ -291,11 +286,8 @@ class _RoadSurface:
 
     def stations(self, number: int) -> np.ndarray:
         """(N,) metres of s at which a section is cut: evenly, wherever a function of it changes, and closer where a border bends."""
-        if number not in self._stations:
-            self._stations[number] = self._stations_of(number)
-        return self._stations[number]
-
-    def _stations_of(self, number):
+        if number in self._stations:
+            return self._stations[number]
         road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
         bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / BORDER_STEP), 1) + 1))[2]).max()
         step = min(BORDER_STEP, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
@@ -311,7 +303,9 @@ class _RoadSurface:
             knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
         steps = [_steps(values) for lane in road.sections[number].lanes.values() for values in (lane.width, lane.heights)]
         cuts = np.concatenate([self._cuts, *(s + first - 2 * LEAST_STEP for s in steps)])
-        return self._bending(number, np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)])))
+        knots = np.unique(np.append(knots, cuts[(cuts > knots[0] + STEP_RUN) & (cuts < knots[-1] - STEP_RUN)]))
+        self._stations[number] = self._bending(number, knots)
+        return self._stations[number]
 
     def _bending(self, number, knots):
         """(N,) metres of s, with more between them where a border bends."""

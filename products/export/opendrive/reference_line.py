@@ -363,15 +363,13 @@ def _spiral_between(start, end):
     if abs(aside) > 1e-9 or forth <= 0.1:
         return None
     length = chord / forth
-    return _element(start, length, (turn - change) / length, (turn + change) / length)
-
-
-def _element(pose, length, first, last):
-    if abs(first) < STRAIGHT_BEND * 1e-3 and abs(last) < STRAIGHT_BEND * 1e-3:
-        return PlanElement(0.0, *pose, length)
-    if abs(first - last) < 1e-9:
-        return PlanElement(0.0, *pose, length, "arc", (float(first + last) / 2,))
-    return PlanElement(0.0, *pose, length, "spiral", (float(first), float(last)))
+    bends = (turn - change) / length, (turn + change) / length
+    kind, values = "spiral", tuple(map(float, bends))
+    if max(map(abs, bends)) < STRAIGHT_BEND * 1e-3:
+        kind, values = "line", ()
+    elif abs(bends[0] - bends[1]) < 1e-9:
+        kind, values = "arc", (float(sum(bends)) / 2,)
+    return PlanElement(0.0, *start, length, kind, values)
 
 
 def _in_order(elements):

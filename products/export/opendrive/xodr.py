@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from collections import defaultdict
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from ....core.common.features import MARKING_LINES, ROAD_EDGES, Features
 from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
 from ..sources import LEAST_CURB, RoadMapSource, add_edge, add_marking_line, plan_length, without_repeats
-from ..xml_tree import XmlElement, read_xml, written, xml_text
+from ..xml_tree import XmlElement, read_xml, xml_text
 from .geometry import Cubics, PlanElement, PlanView
 from .model import DRIVEN_TYPES, LINK_NAMES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 from .objects import FIELD_OF, left_out_of, outlines_of, signals_of
@@ -116,25 +117,19 @@ def _cubics(element, *path, start="s"):
 
 
 def _section_of(element):
-    section = LaneSection(element.number("s"))
-    for side in ("left", "center", "right"):
-        for child in element.all(side, "lane"):
-            lane = _lane_of(child)
-            section.order.append(lane.id)
-            section.lanes[lane.id] = lane
-    return section
+    lanes = [_lane_of(child) for side in ("left", "center", "right") for child in element.all(side, "lane")]
+    return LaneSection(element.number("s"), {lane.id: lane for lane in lanes}, [lane.id for lane in lanes])
 
 
 def _lane_of(element):
-    number = element.number("id")
-    lane = MapLane(int(number), element.get("type"), _cubics(element, "width", start="sOffset"))
+    lane = MapLane(int(element.number("id")), element.get("type"), _cubics(element, "width", start="sOffset"))
     if not len(lane.width) and element.find("border") is not None:
         lane.width, lane.border = _cubics(element, "border", start="sOffset"), True
     lane.marks = sorted((_mark(child) for child in element.all("roadMark")), key=lambda mark: mark.s)
     for end, name in LINK_NAMES.items():
         lane.links[end] = [int(child.number("id")) for child in element.all("link", name)]
-    rows = [[child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height")]
-    lane.heights = np.array(sorted(rows), float).reshape(-1, 3)
+    heights = sorted([child.number(name, 0.0) for name in ("sOffset", "inner", "outer")] for child in element.all("height"))
+    lane.heights = np.array(heights, float).reshape(-1, 3)
     lane.speeds = sorted((child.number("sOffset", 0.0), _speed(child)) for child in element.all("speed"))
     lane.data = {child.get("code"): child.get("value") for child in element.all("userData")}
     return lane
@@ -170,148 +165,36 @@ def _signal(element):
 
 
 def _junction(element):
-    junction = Junction(element.get("id"), element.get("name"))
-    for child in element.all("connection"):
-        links = [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]
-        # a direct junction links roads without a road between
-        connecting = child.get("connectingRoad") or child.get("linkedRoad")
-        junction.connections.append(Connection(child.get("id"), child.get("incomingRoad"), connecting, child.get("contactPoint"), links))
-    return junction
+    # a direct junction links roads without a road between
+    return Junction(element.get("id"), element.get("name"), [
+        Connection(child.get("id"), child.get("incomingRoad"), child.get("connectingRoad") or child.get("linkedRoad"), child.get("contactPoint"),
+                   [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]) for child in element.all("connection")])
 
 
 # Writing.
 
-FILLED_BY_PAINT = 8  # of version 1: from there on outlines may be filled by paint
 SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
 
 
-def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
+def opendrive_text(whole: OpenDriveMap) -> str:
     """The file as text."""
-    root = XmlElement("OpenDRIVE")
-    places = np.concatenate([road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]) \
-        if whole.roads else np.zeros((1, 2))
-    (west, south), (east, north) = np.round([places.min(0), places.max(0)], 3)
-    header = root.add("header", revMajor=whole.version[0], revMinor=whole.version[1], name=whole.name, version="1.0", north=north, south=south,
-                      east=east, west=west, vendor=vendor)
-    if whole.reference:
-        header.add("geoReference", whole.reference)
-    x, y, z, heading = whole.offset
-    header.add("offset", x=x, y=y, z=z, hdg=heading)
-    for road in whole.roads:
-        _add_road(root, road, whole.version[1])
-    for junction in whole.junctions:
-        element = root.add("junction", id=junction.id, name=junction.name, type="default")
-        for connection in junction.connections:
-            child = element.add("connection", id=connection.id, incomingRoad=connection.incoming, connectingRoad=connection.connecting,
-                                contactPoint=connection.contact)
-            for start, to in connection.lanes:
-                child.add("laneLink", **{"from": start, "to": to})
-    return xml_text(root)
+    places = [road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]
+    bounds = np.concatenate(places or [np.zeros((1, 2))])
+    return xml_text("opendrive.xml", map=whole, bounds=np.round([*bounds.min(0), *bounds.max(0)], 3), link_names=LINK_NAMES, geometries=GEOMETRIES,
+                    sides_of=_sides_of, stripes_of=_stripes_of)
 
 
-def _add_road(root: XmlElement, road: MapRoad, minor: int) -> None:
-    element = root.add("road", name=road.name, length=float(road.length), id=road.id, junction=road.junction, rule=road.rule)
-    link = element.add("link") if road.links else element
-    for end, name in LINK_NAMES.items():
-        if (target := road.links.get(end)) is not None:
-            link.add(name, elementType=target.element, elementId=target.id, contactPoint=target.contact or None)
-    for s, speed in road.speeds:
-        element.add("type", s=s, type="unknown").add("speed", max=speed, unit="km/h")
-    plan = element.add("planView")
-    for piece in road.plan.elements:
-        child = plan.add("geometry", s=piece.s, x=piece.x, y=piece.y, hdg=piece.heading, length=piece.length)
-        shape = child.add(piece.kind, **dict(zip(GEOMETRIES[piece.kind], piece.values)))
-        if piece.kind == "paramPoly3":
-            shape.attributes["pRange"] = "normalized" if piece.normalized else "arcLength"
-    _rows(element.add("elevationProfile"), "elevation", road.elevation)
-    lateral = element.add("lateralProfile")
-    if np.abs(road.superelevation.rows[:, 1:]).max(initial=0.0) > 0:
-        _rows(lateral, "superelevation", road.superelevation)
-    for row in road.shape:
-        lateral.add("shape", **dict(zip(SHAPE, row)))
-    lanes = element.add("lanes")
-    _rows(lanes, "laneOffset", road.lane_offset)
-    for section in road.sections:
-        _add_section_element(lanes, section)
-    objects = element.add("objects") if road.objects else element
-    for item in road.objects:
-        _add_object(objects, item, minor)
-    signals = element.add("signals") if road.signals else element
-    for item in sorted(road.signals, key=lambda item: not item["own"]):   # references come last
-        _add_signal(signals, item)
-    _add_data(element, road.data)
+def _sides_of(section):
+    """(tag, lanes in their order) of each side."""
+    lanes = [section.lanes[id] for id in section.order]
+    return [("left", [lane for lane in lanes if lane.id > 0]), ("center", [section.lanes[0]]), ("right", [lane for lane in lanes if lane.id < 0])]
 
 
-def _add_signal(signals: XmlElement, item: dict) -> None:
-    place = {"s": item["s"], "t": item["t"], "id": item["id"], "orientation": item["orientation"]}
-    if item["own"]:
-        code = item["country"]   # two letters, or a name of the format's own
-        country = (code.upper() if len(code) < 4 else code if code == "OpenDRIVE" else code.title()) or None
-        element = signals.add("signal", **place, dynamic=item["dynamic"], zOffset=item["zOffset"], type=item["type"] or "-1", name=item["name"],
-                              subtype=item["subtype"] or "-1", country=country, value=item["value"],
-                              unit=item["unit"] or None, height=item["height"], width=item["width"], hOffset=item["hOffset"])
-    else:
-        element = signals.add("signalReference", **place)
-    for first, last in item["validity"]:
-        element.add("validity", fromLane=first, toLane=last)
-
-
-def _rows(parent: XmlElement, tag: str, cubics: Cubics, start: str = "s") -> None:
-    for s, a, b, c, d in cubics.rows:
-        parent.add(tag, **{start: s, "a": a, "b": b, "c": c, "d": d})
-
-
-def _add_section_element(lanes: XmlElement, section: LaneSection) -> None:
-    element = lanes.add("laneSection", s=float(section.s))
-    for side, ids in (("left", [id for id in section.order if id > 0]), ("center", [0]), ("right", [id for id in section.order if id < 0])):
-        if ids:
-            group = element.add(side)
-            for id in ids:
-                _add_lane(group, section.lanes[id])
-
-
-def _add_lane(group: XmlElement, lane: MapLane) -> None:
-    element = group.add("lane", id=lane.id, type=lane.type, level="false")
-    link = element.add("link") if any(lane.links.values()) else element
-    for end, ids in lane.links.items():
-        for id in ids:
-            link.add(LINK_NAMES[end], id=id)
-    _rows(element, "width", lane.width, "sOffset")
-    for mark in lane.marks:
-        _add_mark(element, mark)
-    for s, speed in lane.speeds:
-        element.add("speed", sOffset=s, max=speed, unit="km/h")
-    for s, inner, outer in lane.heights:
-        element.add("height", sOffset=s, inner=inner, outer=outer)
-    _add_data(element, lane.data)
-
-
-def _add_data(element: XmlElement, data: dict[str, str]) -> None:
-    for code, value in data.items():
-        element.add("userData", code=code, value=value)
-
-
-def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
-    width = mark.width if mark.type != "none" else None
-    element = lane.add("roadMark", sOffset=mark.s, type=mark.type, weight=mark.weight, color=mark.colour, width=width, laneChange=None)
+def _stripes_of(mark):
+    """(dash, gap, aside), metres, of every stripe of a mark that is told apart; none where its type says it all."""
     stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
-    if stripes:
-        kind = element.add("type", name=mark.type, width=mark.width)
-        for stripe, t in zip(stripes, (mark.apart / 2, -mark.apart / 2)):
-            dash, gap = (mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)
-            kind.add("line", length=dash, space=gap, tOffset=t if mark.apart else 0.0, sOffset=0.0, width=mark.width)
-
-
-def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
-    element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
-                          orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
-    if not len(item["corners"]):
-        element.attributes["height"] = written(item["height"])
-        return
-    outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
-    tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
-    for number, corner in enumerate(item["corners"]):
-        outline.add(tag, id=number, **dict(zip(names, corner)), height=0.0)
+    return [(*((mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)), aside if mark.apart else 0.0)
+            for stripe, aside in zip(stripes, (mark.apart / 2, -mark.apart / 2))]
 
 
 # The lanes and lines of an OpenDRIVE map as layers like ours.
@@ -339,13 +222,13 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []
     lines, edges = Features("LineStringZ", MARKING_LINES, crs=crs), Features("LineStringZ", ROAD_EDGES, crs=crs)
-    network, faults = LaneNetwork(whole), _Faults()
+    network, faults = LaneNetwork(whole), defaultdict[str, list[Any]](list)
     # a whole number for every road: its id where all are such, else its place
     numbered = all(re.fullmatch(r"\d{1,9}", road.id) for road in whole.roads)
     numbers = {road.id: int(road.id) if numbered else k for k, road in enumerate(whole.roads, start=1)}
     for count, road in enumerate(whole.roads):
         surface = road.surface
-        faults.jumps += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
+        faults["jumps"] += [(road.id, *jump) for jump in surface.jumps() if jump[1] > BORDER_JUMP]
         for number, section in enumerate(road.sections):
             if road.section_end(number) - section.s > SHORTEST_SECTION:
                 _add_section(rows, lines, edges, whole, network, surface, number, numbers[road.id], faults)
@@ -353,7 +236,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     lane_ids = {row["lane_id"] for row in rows}
     for row in rows:   # what follows may be no lane of ours
         row["successors"] = [name for name in row["successors"] if name in lane_ids]
-    notes = faults.said()
+    notes = list(_said(**faults))
     if whole.problems:
         line, text = whole.problems[0]
         notes.insert(0, f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
@@ -362,36 +245,27 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
         attributes={row["lane_id"]: row["known"] for row in rows if row["known"]}, left_out=left_out_of(whole))
 
 
-@dataclass
-class _Faults:
-    """What is wrong with the geometry of the map."""
-
-    jumps: list[tuple[str, float, float, int]] = field(default_factory=list)   # (road, s, metres by which a border jumps there, its lane)
-    folds: list[tuple[str, int, np.ndarray]] = field(default_factory=list)   # (road, lane, place) of borders
-    negative: list[tuple[str, int, float, float]] = field(default_factory=list)   # (road, lane, least width, s)
-
-    def said(self) -> list[str]:
-        sentences = []
-        if self.jumps:   # every road with gaps or kinks, those with the largest first
-            roads: dict[str, list[tuple[str, float, float, int]]] = {}
-            for jump in sorted(self.jumps, key=lambda jump: -jump[2]):
-                roads.setdefault(jump[0], []).append(jump)
-            named = [f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(less)} more" if less else "")
-                     for (road, s, metres, lane), *less in list(roads.values())[:ROADS_NAMED]]
-            if rest := list(roads.values())[ROADS_NAMED:]:
-                named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
-            sentences.append(f"Gaps or kinks of the reference line, or steps of heights and widths ({len(roads)} of the roads), make borders of "
-                             f"lanes jump by more than {BORDER_JUMP:g} m: {'; '.join(named)}. Correct them where the map was made.")
-        if self.folds:
-            road, lane, place = self.folds[0]
-            sentences.append(f"{len(self.folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
-                             f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, "
-                             f"y {place[1]:.1f}.")
-        if self.negative:
-            road, lane, width, s = self.negative[0]
-            sentences.append(f"{len(self.negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
-                             f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
-        return sentences
+def _said(jumps=(), folds=(), negative=()):
+    """Sentences on what is wrong with the geometry of the map: (road, s, metres, lane) of borders that jump, (road, lane, place) of those that fold,
+    and (road, lane, least width, s) of lanes with a width below 0."""
+    if jumps:   # every road with gaps or kinks, those with the largest first
+        roads: dict[str, list[tuple[str, float, float, int]]] = {}
+        for jump in sorted(jumps, key=lambda jump: -jump[2]):
+            roads.setdefault(jump[0], []).append(jump)
+        named = [f"road {road}, lane {lane}, by {metres:.3f} m at s {s:.1f} m" + (f" and less at {len(less)} more" if less else "")
+                 for (road, s, metres, lane), *less in list(roads.values())[:ROADS_NAMED]]
+        if rest := list(roads.values())[ROADS_NAMED:]:
+            named.append(f"{len(rest)} more roads, by at most {rest[0][0][2]:.3f} m")
+        yield (f"Gaps or kinks of the reference line, or steps of heights and widths ({len(roads)} of the roads), make borders of "
+               f"lanes jump by more than {BORDER_JUMP:g} m: {'; '.join(named)}. Correct them where the map was made.")
+    if folds:
+        road, lane, place = folds[0]
+        yield (f"{len(folds)} borders of lanes fold back over themselves, as a curve is tighter there than the border is far from "
+               f"the reference line. The folds were cut off. The first is of road {road}, lane {lane}, near x {place[0]:.1f}, y {place[1]:.1f}.")
+    if negative:
+        road, lane, width, s = negative[0]
+        yield (f"{len(negative)} lanes have a width below 0, which was taken as 0. The first is lane {lane} of road {road} with "
+               f"{width:.2f} m at s {s:.1f} m. Correct them where the map was made.")
 
 
 def _add_section(rows, lines, edges, whole, network, surface, number, road_number, faults):
@@ -406,9 +280,9 @@ def _add_section(rows, lines, edges, whole, network, surface, number, road_numbe
         (inner, _), (outer, fold) = (surface.without_folds(s, points) for points in surface.borders(number, id, s, offsets))
         inner, outer = whole.placed(inner), whole.placed(outer)
         if fold is not None:
-            faults.folds.append((road.id, id, whole.placed(fold[None])[0]))
+            faults["folds"].append((road.id, id, whole.placed(fold[None])[0]))
         if not lane.border and len(lane.width) and (least := lane.width.least(float(s[-1]) - section.s))[0] < NEGATIVE_WIDTH:
-            faults.negative.append((road.id, id, least[0], section.s + least[1]))
+            faults["negative"].append((road.id, id, least[0], section.s + least[1]))
         _add_painted(lines, road_number, lane, section.s, s, outer, _kind(section.lanes, id))
         _add_edges(edges, surface, number, id, s, inner, outer, road_number)
         if lane.type not in NO_LANES and np.abs(offsets[id] - offsets[surface.inside(number, id)]).max() >= LEAST_WIDTH:

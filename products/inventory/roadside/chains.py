@@ -373,7 +373,12 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
     The chain is halved where height, thickness and what is seen through it change most, as long as both parts are `min_length` m long and
     differ by more than their own scatter; neighbours of one kind are one thing all the same.
     """
-    cuts = [0, *_cuts(_sections(chain), chain.members.slice, 0, len(chain.members), min_length), len(chain.members)]
+    members = chain.members
+    through = members.behind / np.maximum(members.behind + members.points, 1.0)
+    # what distinguishes things, in units of what their sections differ by at least
+    sections = np.c_[np.minimum(members.top, HIGHEST) / TOP_CHANGE, np.minimum(members.thickness, THICKEST) / THICKNESS_CHANGE,
+                     through / THROUGH_CHANGE]
+    cuts = [0, *_cuts(sections, members.slice, 0, len(members), min_length), len(members)]
     kinds = [kind_of(chain.part(np.arange(a, b))) for a, b in zip(cuts[:-1], cuts[1:])]
     first = np.flatnonzero([k == 0 or kind != kinds[k - 1] for k, kind in enumerate(kinds)])
     result = []
@@ -384,13 +389,6 @@ def things_of(chain: Chain, min_length: float) -> list[tuple[str, Chain]]:
         if kind is not None:
             result.append((kind, whole))
     return result
-
-
-def _sections(chain):
-    """(N, 3) what distinguishes things, in units of what their sections differ by at least."""
-    members = chain.members
-    through = members.behind / np.maximum(members.behind + members.points, 1.0)
-    return np.c_[np.minimum(members.top, HIGHEST) / TOP_CHANGE, np.minimum(members.thickness, THICKEST) / THICKNESS_CHANGE, through / THROUGH_CHANGE]
 
 
 def _cuts(sections, slices, first, last, min_length):

@@ -18,20 +18,7 @@ from ....core.survey.survey import Survey
 from ..borders import BorderLayers, RoadBorders, RoadsideSettings
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, along_the_chain, find_chains, gaps_by_window, judged, pulses_at, things_of
-from .uprights import (
-    FIRST_BIN,
-    GROUND_CELL,
-    HEIGHT_BIN,
-    UPRIGHT_SLICE,
-    Pole,
-    Uprights,
-    find_gutters,
-    find_poles,
-    find_uprights,
-    level_views,
-    lines_of_sight,
-    local_ground,
-)
+from .uprights import ON_GROUND, UPRIGHT_SLICE, Pole, Uprights, find_gutters, find_poles, find_uprights, level_views, lines_of_sight, local_ground
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
 ROADSIDE_MARGIN = 5.0      # m before and after it, for the ground
@@ -120,14 +107,6 @@ def _edges_of(survey, road, borders):
     return SideEdges(s, *sides, borders.given)
 
 
-def _above_view(survey, road, uprights, height):
-    """(N,) bool, whether uprights are as high as the scanner, m above the road, whose view is level; None is one that sees all round."""
-    if height is None:
-        return np.zeros(len(uprights), bool)
-    s = (uprights.slice + 0.5) * UPRIGHT_SLICE
-    return uprights.ground + uprights.top - survey.road_height(road, s) > height
-
-
 def _seen(survey, road, start, side, edges, number, rows):
     """(number of the pass that drove nearest to a side of a window, those of the rows that it measured; all where it measured none)."""
     middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
@@ -166,8 +145,7 @@ def _look(survey, road, start, edges, settings, level):
         return {}, []
     s, d, z, number, time = s[near], d[near], z[near], points.pass_number[near], points.time[near]
     h = z - survey.road_height(road, s)
-    lowest = float(np.floor(d.min() / GROUND_CELL) * GROUND_CELL)   # the border of a cell, so that cells are the same in every window
-    ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (lowest, float(d.max()) + 1e-3))
+    ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])))
     above = h - ground.at(s, d)
     result, poles = {}, []
     slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
@@ -183,7 +161,9 @@ def _look(survey, road, start, edges, settings, level):
         across, up = lines_of_sight(survey, road, nearest, s[rows], d[rows], h[rows], time[rows])
         sight = up / np.maximum(-side * across[1], LEAST_ACROSS)
         uprights = find_uprights(s[rows], d[rows], above[rows], (z - above)[rows], slices, side, sight, settings.min_height)
-        result["line", side] = replace(uprights, above_view=_above_view(survey, road, uprights, level.get(nearest)))
+        # as high as a scanner whose view is level; others see all round
+        tops = uprights.ground + uprights.top - survey.road_height(road, (uprights.slice + 0.5) * UPRIGHT_SLICE)
+        result["line", side] = replace(uprights, above_view=tops > level.get(nearest, np.inf))
         if edges.known:
             result["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
     return result, sorted(poles, key=lambda pole: (pole.s, pole.d))
@@ -206,10 +186,6 @@ class SideEdges:
     def of(self, side: int, s: np.ndarray) -> np.ndarray:
         """(N,) m, offset of the edge of a side."""
         return np.interp(s, self.s, self.left if side > 0 else self.right)
-
-    def middle(self, s: np.ndarray) -> np.ndarray:
-        """(N,) m, offset of the middle between the edges."""
-        return 0.5 * (self.of(1, s) + self.of(-1, s))
 
     def beyond(self, side: int, s: np.ndarray, d: np.ndarray) -> float:
         """m, median distance of (N,) places beyond the edge of a side; NaN where no layer says where it is."""
@@ -331,7 +307,6 @@ def _behind(chain, face, equal):
 # The roadside as layers: lines along its foot, and points.
 
 DRAWN_TOLERANCE = 0.03   # m to which lines are simplified
-ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stands on the ground, for grass hides the rest
 
 
 def roadside_to_features(roadside: Roadside) -> tuple[Features, Features]:
@@ -350,7 +325,7 @@ def roadside_to_features(roadside: Roadside) -> tuple[Features, Features]:
     for road, poles in roadside.poles.items():
         for pole in poles:
             x, y, z = roadside.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
-            side = 1 if pole.d > float(roadside.edges[road].middle(np.array([pole.s]))[0]) else -1
+            side = 1 if pole.d > 0.5 * float(sum(roadside.edges[road].of(side, np.array([pole.s]))[0] for side in (1, -1))) else -1
             points.add(shapely.Point(x[0], y[0], z[0]), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
                        offset_m=pole.d, edge_m=roadside.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
                        height_m=pole.height, diam_m=pole.diameter)

@@ -13,7 +13,7 @@ from ....core.common.arrays import Rows, order_by
 from ....core.road.common.pseudo_scanlines import lowest_layers
 from ....core.survey.survey import Survey
 from ....core.survey.weights import READING
-from ..surface_grid import CROSS_CELL, SLICE_LENGTH, SurfaceGrid, smoothed, surface_grid
+from ..surface_grid import CROSS_CELL, SLICE_LENGTH, smoothed, surface_grid
 
 UPRIGHT_SLICE = 0.5              # m along the road
 UPRIGHT_CELL = 0.10              # m across
@@ -21,6 +21,7 @@ HEIGHT_BIN = 0.10        # m
 LOW_BINS = 25            # height bins in which things stand: up to 2.5 m
 TOP_BIN, TOP_BINS = 0.05, 16   # m and number of the bins below the top that tell the kind of a line
 FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
+ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN   # m: what is seen from here down stands on the ground, for grass hides the rest
 REACH_CELLS = 1          # cells on either side that belong to the same upright
 BODY_CELLS = 3           # cells on either side whose points describe it
 MIN_BINS = 2             # occupied height bins of an upright
@@ -142,7 +143,10 @@ def _described(at, upright, u, above, everything, first, side):
     du, dh = u - mean_u[upright], above - mean_h[upright]
     batter = np.bincount(upright, du * dh, n) / np.maximum(np.bincount(upright, dh * dh, n), 1e-6)
     i, all_u, all_above, all_ground, all_sight = everything
-    ground = _ground_at(at, middle, i, all_u, all_ground)
+    # of the point next beyond the face of each
+    key = i * 1e4 + all_u
+    order = np.argsort(key, kind="stable")
+    ground = all_ground[order[np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)]]
     behind = _behind(at, middle, ground + tops, i, all_u, all_above + all_ground, all_sight)
     return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, below_top, farthest - nearest, batter, count.astype(float), behind,
                     np.zeros(n, bool), _rough(upright, u, n))
@@ -182,14 +186,6 @@ def _first_gap(filled, gap):
     levels = filled.shape[1]
     empty = np.stack([~filled[:, lag:levels - gap + lag] for lag in range(gap + 1)]).all(axis=0)
     return np.where(empty.any(axis=1), np.argmax(empty, axis=1), levels)
-
-
-def _ground_at(at, middle, i, u, ground):
-    """(N,) median local z of the ground at the uprights."""
-    key = i * 1e4 + u
-    order = np.argsort(key, kind="stable")
-    index = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
-    return ground[order[index]]
 
 
 def _behind(at, middle, tops, i, u, z, sight):
@@ -400,13 +396,11 @@ class _LocalGround:
         return np.where(np.isfinite(between), between, np.where(np.isfinite(low), low, high))
 
 
-def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> _LocalGround:
-    """The ground under points, (N,) m stations, offsets and heights above the expected road, in so many slices from a station on.
-
-    offsets : (right, left) m
-    """
-    columns = max(int(np.ceil((offsets[1] - offsets[0]) / GROUND_CELL)), 2)
-    i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - offsets[0]) / GROUND_CELL).astype(np.int64)
+def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int) -> _LocalGround:
+    """The ground under points, (N,) m stations, offsets and heights above the expected road, in so many slices from a station on."""
+    origin = float(np.floor(d.min() / GROUND_CELL) * GROUND_CELL)   # the border of a cell, so that cells are the same wherever one looks from
+    columns = max(int(np.ceil((float(d.max()) + 1e-3 - origin) / GROUND_CELL)), 2)
+    i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - origin) / GROUND_CELL).astype(np.int64)
     inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns))
     cell, h = (i * columns + j)[inside], h[inside]
     order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), cell)
@@ -426,14 +420,14 @@ def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slic
     low = _let_down(filled, _rims(low) | _rims(filled))
     finite = np.isfinite(low)
     if not finite.any():
-        return _LocalGround(start, offsets[0], low)
+        return _LocalGround(start, origin, low)
     # beyond what is known the ground neither rises nor falls
     level = np.where(finite, low, np.inf)
     cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
     smooth = median_filter(np.where(finite, level, 1e3), size=(3, 1), mode="nearest")
     opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
     ground = np.where(finite & (opened < 500.0), opened, np.nan)
-    return _LocalGround(start, offsets[0], _let_down(ground, smooth - ground > RIM_STEP))
+    return _LocalGround(start, origin, _let_down(ground, smooth - ground > RIM_STEP))
 
 
 def _supported(place, height, count, shape):
@@ -578,7 +572,10 @@ def find_gutters(survey: Survey, road: int, start: float, slices: int, side: int
     grid = surface_grid(survey, road, start, slices, (float(np.floor(ends.min() / CROSS_CELL) * CROSS_CELL), float(ends.max())))
     if not len(grid.groups):
         return Uprights.none()
-    profile = smoothed(_mean(grid))
+    # of all passes and scanners together, by their numbers of points
+    count = np.where(np.isfinite(grid.height), grid.count, 0)
+    total, n = (np.nan_to_num(grid.height) * count).sum(axis=0), count.sum(axis=0)
+    profile = smoothed(np.where(n > 0, total / np.maximum(n, 1), np.nan))
     gutters, columns, depth = lowest_along(profile, side * (grid.d - edges[:, None]))
     # a slice of the surface holds several of those along which lines are followed
     times = int(round(SLICE_LENGTH / UPRIGHT_SLICE))
@@ -609,11 +606,3 @@ def lowest_along(profile: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.nda
     falls_on = np.where((beyond > 0) & (beyond < OUTER_REACH) & np.isfinite(profile), profile, np.inf).min(axis=1) < low
     gutters = np.flatnonzero(np.isfinite(low) & (outer - low > OUTER_RISE) & (inner - low > INNER_RISE) & ~falls_on)
     return gutters, j[gutters], (outer - low)[gutters]
-
-
-def _mean(grid: SurfaceGrid) -> np.ndarray:
-    """(I, J) heights of all passes and scanners together, by their numbers of points; NaN where there are none."""
-    count = np.where(np.isfinite(grid.height), grid.count, 0)
-    total = (np.nan_to_num(grid.height) * count).sum(axis=0)
-    n = count.sum(axis=0)
-    return np.where(n > 0, total / np.maximum(n, 1), np.nan)

@@ -14,15 +14,7 @@ from ....core.io.geotiff import GEOTIFF_TILE, IntensityImage
 from ....core.io.local_files import gdal_exceptions, open_raster
 from ....core.lazy import cv2, gdal
 from ..control_points import SourceImage
-from ..georeference import (
-    COLLINEAR_RATIO,
-    MIN_CONTROL_POINTS,
-    MIN_INVERSE_CONDITION,
-    ImagePolynomial,
-    fit_image_polynomial,
-    inverse_condition,
-    principal_extents,
-)
+from ..georeference import MIN_CONTROL_POINTS, MIN_INVERSE_CONDITION, ImagePolynomial, fit_image_polynomial, inverse_condition, lie_on_a_line
 from ..rough_place import RoughPlace
 
 FINEST_CELL = 0.04        # m: smaller cells show the gaps between laser points rather than paint
@@ -84,7 +76,7 @@ def _means(pixels, step):
 
 
 @gdal_exceptions()
-def read_photo(image: SourceImage, size: float, cell: float) -> Photo:
+def photo_of(image: SourceImage, size: float, cell: float) -> Photo:
     """The contrast of an image of pixels of about `size` m, in pixels about as large as a `cell` (m) of the intensity image or as they are.
 
     Raises RoadExtractionError if the image cannot be read.
@@ -297,7 +289,8 @@ class _Round:
         """(x and y of the photo's middle for every column and row of a product, those too far away as (H, W) bool)."""
         key = (shape, side, bounds)
         if self._places is None or self._places[0] != key:
-            across, down = ((_shifts(n, n - side) + side / 2) * self.cell for n in shape[::-1])
+            # shifts of a circular correlation, those beyond the photo's side being negative ones
+            across, down = ((np.where(np.arange(n) > n - side, np.arange(n) - n, np.arange(n)) + side / 2) * self.cell for n in shape[::-1])
             far = (across[None, :] - bounds.x) ** 2 + (-down[:, None] - bounds.y) ** 2 > bounds.reach**2
             self._places = key, (across, -down, far)
         return self._places[1]
@@ -314,12 +307,6 @@ class _Round:
         photo = np.where(paint == 0, 0.0, photo)
         norm = float(np.sqrt((paint * paint).sum() * (photo * photo).sum()))
         return place._replace(score=place.sign * float((paint * photo).sum()) / norm if norm else 0.0)
-
-
-def _shifts(length, most):
-    """Shifts of a circular correlation, those beyond `most` being negative ones."""
-    shifts = np.arange(length)
-    return np.where(shifts > most, shifts - length, shifts)
 
 
 # What is searched: the part of the intensity image where a photo may lie.
@@ -440,7 +427,7 @@ def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, 
     if len(x) < MIN_CONTROL_POINTS[1]:
         return np.zeros(len(x), dtype=bool)
     order = np.random.default_rng(1).random((_DRAWS, len(x))).argsort(axis=1)
-    if _lie_on_a_line(x, y):
+    if lie_on_a_line(np.column_stack([x, y])):
         # as complex numbers a similarity is linear: d = a + b z, from two places
         terms, target, drawn = np.column_stack([np.ones(len(x)), x + 1j * y]), (moved[:, 0] + 1j * moved[:, 1])[:, None], order[:, :2]
     else:
@@ -457,11 +444,6 @@ def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, 
     # a smooth count: the best of many draws is the one whose pairs lie near it
     votes = (np.where(within, 1.0 - 0.5 * (misfit / tolerance) ** 2, 0.0) * weights).sum(axis=1)
     return within[int(votes.argmax())]
-
-
-def _lie_on_a_line(x, y):
-    along, across = principal_extents(np.column_stack([x, y]))
-    return across <= COLLINEAR_RATIO * along
 
 
 def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float,
@@ -503,7 +485,7 @@ def highest_order(x: np.ndarray, y: np.ndarray) -> int:
     """The highest order, 2 or 1, that (N,) places determine well; 0 where they lie on a line or are too few."""
     for order in (2, 1):
         if len(x) >= _PAIRS_PER_TERM * MIN_CONTROL_POINTS[order] or (order == 1 and len(x) > MIN_CONTROL_POINTS[1]):
-            if not _lie_on_a_line(x, y) and (order == 1 or inverse_condition(x, y, order) > 10 * MIN_INVERSE_CONDITION):
+            if not lie_on_a_line(np.column_stack([x, y])) and (order == 1 or inverse_condition(x, y, order) > 10 * MIN_INVERSE_CONDITION):
                 return order
     return 0
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 
 from ....core.common.errors import RoadExtractionError
 from ....core.common.features import PROPOSED_POINTS, Features
@@ -16,18 +17,7 @@ from ....core.io.geotiff import IntensityImage
 from ....core.lazy import cv2
 from ..control_points import SourceImage
 from ..rough_place import RoughPlace
-from .places import (
-    Photo,
-    Placement,
-    SurveyedPaint,
-    find_places,
-    highest_order,
-    left_out_residuals,
-    paint_about,
-    read_photo,
-    reduced,
-    robust_placement,
-)
+from .places import Photo, Placement, SurveyedPaint, find_places, highest_order, left_out_residuals, paint_about, photo_of, reduced, robust_placement
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
@@ -49,7 +39,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     """
     settings = settings or ProposalSettings()
     paint, bounds = paint_about(image, intensity, rough)
-    photo = read_photo(image, rough.size, paint.cell)
+    photo = photo_of(image, rough.size, paint.cell)
     progress.report(0.1)
     x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
@@ -57,12 +47,12 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
                                   "Measure the control points by hand there, at manholes and curbs for example.")
     for sign, part in ((1, progress.part(0.1, 0.5)), (-1, progress.part(0.5, 0.9))):
         tried = _followed(image, photo, paint, bounds, sign, x, y, part)
-        for chosen in tried:
-            pairs = _pair_corners(chosen.placement, paint, photo, x, y, settings)
+        for placement, scores in tried:
+            pairs = _pair_corners(placement, paint, photo, x, y, settings)
             if pairs is not None:
-                middle = _middle_on_map(chosen.placement, image)
-                rivals = [_rival_elsewhere(chosen.scores, candidate.scores, tuple((_middle_on_map(candidate.placement, image) - middle).tolist()))
-                          for candidate in tried if candidate is not chosen]
+                middle = _middle_on_map(placement, image)
+                rivals = [_rival_elsewhere(scores, other_scores, tuple((_middle_on_map(other, image) - middle).tolist()))
+                          for other, other_scores in tried if other is not placement]
                 near = _nearby_rival(pairs.placement, paint, photo, x, y)
                 rival = min([*rivals, *([near] if near else [])], key=lambda one: one.margin, default=None)
                 return _proposal(image, intensity, rough, settings, pairs, rival, paint)
@@ -72,27 +62,20 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
 
 
 def _followed(image, photo, paint, bounds, sign, x, y, progress):
-    """The few best places of the search, aligned with the paint, the best first."""
-    tried: list[_Tried] = []
+    """(placement, its `_corner_scores`) of the few best places of the search, aligned with the paint, the best first."""
+    tried: list[tuple[Placement, np.ndarray]] = []
     of_photo = replace(bounds, sizes=(bounds.sizes[0] * photo.factor, bounds.sizes[1] * photo.factor))
     places = find_places(photo.contrast, paint.contrast, paint.cell, of_photo, sign, progress.part(0.0, 0.8))
     for place in places[:_CANDIDATES]:
         progress.check_cancelled()
         start = Placement.similarity(place.x, place.y, place.turn, place.size / photo.factor, (image.width / 2, image.height / 2), place.sign)
         placement = _align(start, paint, photo, progress)
-        if placement is not None and not any(_same(placement, candidate.placement, x, y) for candidate in tried):
-            tried.append(_Tried(placement, _corner_scores(placement, paint, photo, x, y)))
+        # most corners tell whether two are the same: those beyond the photo are extrapolated
+        if placement is not None and all(
+                np.median(np.hypot(*placement.metres(x, y, *other.pixels(x, y)).T)) >= _SAME for other, _ in tried):
+            tried.append((placement, _corner_scores(placement, paint, photo, x, y)))
     progress.report(1.0)
-    return sorted(tried, key=lambda one: -one.total)
-
-
-class _Tried(NamedTuple):
-    placement: Placement
-    scores: np.ndarray
-
-    @property
-    def total(self):
-        return float(np.nansum(np.maximum(self.scores, 0.0)))
+    return sorted(tried, key=lambda one: -float(np.nansum(np.maximum(one[1], 0.0))))
 
 
 def _proposal(image, intensity, rough, settings, pairs, rival, paint):
@@ -137,11 +120,6 @@ def _middle_on_map(placement, image):
     slope = polynomial.jacobian(centre[:, 0], centre[:, 1])[0]
     centre_pixel = np.column_stack(polynomial.to_map(centre[:, 0], centre[:, 1]))[0]
     return polynomial.centre + np.linalg.solve(slope, np.array([0.5 * image.width, 0.5 * image.height]) - centre_pixel)
-
-
-def _same(one, other, x, y):
-    # of most corners: those beyond the photo are extrapolated
-    return bool(np.median(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T)) < _SAME)
 
 
 def _range(rough, bounds):
@@ -321,11 +299,9 @@ class Proposal:
 
     def features(self) -> Features:
         """Features PROPOSED_POINTS, as "Georeference image" takes them: pairs that are not accepted are switched off."""
-        from shapely import Point
-
         layer = Features("PointZ", PROPOSED_POINTS, crs=self.crs)
         for k in range(len(self)):
-            layer.add(Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
+            layer.add(shapely.Point(self.easting[k], self.northing[k], 0.0), point=k + 1, accepted=self.accepted[k], role="control",
                       score=self.score[k], residual=self.residual[k], pixel=self.pixel[k], line=self.line[k], why=self.why[k])
         return layer
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import RemainingTime
-from lanewright.core.common.weights import PROGRESS
+from lanewright.core.common.progress import PROGRESS, RemainingTime
 
 
 class Clock:

@@ -138,7 +138,7 @@ def test_a_line_off_the_roads_of_the_survey_is_not_drawn():
     (("remove", "edge", along(10, 20, 4.0)), "one of accept, delete, move, draw"),
     (("delete", "curb", along(10, 20, 4.0)), "one of edge, marking, lane"),
     (("draw", "edge", Point(EAST + 20, NORTH + 4)), "takes a line"),
-    (("delete", "edge", None), "its place is not known"),
+    (("delete", "edge", None), "neither a geometry nor a road"),
     (("delete", "edge", Point(EAST + 20, NORTH + 4).buffer(1)), "a point or a line is needed"),
 ])
 def test_a_correction_that_cannot_be_understood_is_refused_by_its_row(row, said):

@@ -280,14 +280,24 @@ def test_beyond_a_stop_line_lanes_lead_up_to_where_the_curb_bends_into_the_side_
     assert all(106.0 < places[:, 1].max() < 109.0 for places in lanes.values()) and len(lanes) == 2
 
 
+@pytest.mark.parametrize("borders", [(-3.5,), (lambda station: 7.0 - 0.15 * np.clip(station - 95.0, 0.0, 20.0), -3.5)])
+def test_beyond_the_last_dash_a_lane_goes_on_as_it_was_driven(borders):
+    """There is a curb on its side alone, or the one beyond the other lane comes nearer: the vehicle went straight on."""
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 98.0, pattern="dashed")
+    driven = [line for line, row in street.lanes(edges=curbs(street, *borders))[0] if row["direction"] == 1]
+    assert max(line.bounds[2] for line in driven) - EAST == pytest.approx(114.5, abs=0.6)
+    assert all(np.abs(street.offsets(line) + 1.75).max() < 0.05 for line in driven)
+
+
 @pytest.mark.parametrize("side", [1, -1])
-def test_beyond_their_paint_lanes_lead_no_farther_than_an_island_between_them(side):
+def test_beyond_its_paint_a_lane_leads_no_farther_than_an_island_on_it(side):
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 98.0, pattern="dashed")
     edges, along = curbs(street, 3.5, -3.5), np.arange(106.0, 114.0, 0.5)
     for chain, offset in enumerate((side * 0.2, side * 1.0), start=2):
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="island", edge="curb", status="measured",
                   part="bottom", chain=chain, side="left")
-    assert max(line.bounds[2] for line, _ in street.lanes(edges=edges)[0]) - EAST == pytest.approx(105.5, abs=0.6)
+    ends = [line.bounds[2] for line, row in street.lanes(edges=edges)[0] if row["direction"] == -side]
+    assert max(ends) - EAST == pytest.approx(105.5, abs=0.6)
 
 
 def test_pockets_that_face_each_other_over_a_junction_are_two_lanes_and_the_median_before_them_is_none():
@@ -356,6 +366,18 @@ def test_a_drive_on_another_road_far_beside_a_lane_says_nothing_against_it():
     other = street(again=(15.0,))
     assert len(other.frame.roads) == 2
     assert lanes(other) == lanes(street(again=())) == {0.0: 1, 3.5: 1}
+
+
+def test_a_lane_that_moves_aside_for_a_turning_lane_may_keep_its_direction():
+    """Before a stop line a lane opens between solid lines where the oncoming one lay, which nobody drove in and which a curb leads aside."""
+    def aside(station):
+        return 3.3 * np.clip((station - 60.0) / 10.0, 0.0, 1.0)
+
+    street = Street().paint(0.0, 5.0, 63.0, kind="", pattern="dashed").paint(0.0, 63.0, 112.0, kind="").paint(aside, 67.0, 112.0, kind="")
+    stop = painted(street, (112.0, 112.5, -3.4, 3.2, "stop"))
+    lines, _ = street.lanes(edges=curbs(street, lambda station: 3.5 + aside(station), -3.5), markings=stop)
+    before = [row for line, row in lines if line.bounds[2] < EAST + 65.0 and np.median(street.offsets(line)) > 0]
+    assert before and all(row["confidence"] <= 0.6 and '"direction": -1' in row["other"] for row in before if row["direction"] == 1)
 
 
 def test_beside_a_curb_lanes_are_like_those_between_lines_there_and_not_like_those_of_the_next_block():

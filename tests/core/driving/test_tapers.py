@@ -86,6 +86,17 @@ def test_where_a_line_steps_aside_the_lanes_between_it_and_the_other_edge_follow
         np.testing.assert_allclose(here[here > 0], left - (2.9 + left) / 4, atol=0.01)
 
 
+def test_beside_a_line_that_moves_aside_a_lane_stays_where_it_was_driven_beside_its_curb():
+    """Before a turning lane opens in the middle, the dashes on the left lead away from the lane."""
+    street = Street(length=LENGTH, vehicle=-1.75)
+    street.paint(lambda s: np.clip((s - 100.0) / 25.0, 0.0, 1.1), 5.0, 127.0, pattern="dashed")
+    edges = Features("LineStringZ", ROAD_EDGES)
+    along = np.arange(0.0, LENGTH + 0.1, 0.5)
+    edges.add(LineString(np.c_[street.places(along, -3.5), np.full(len(along), HEIGHT)]), road=0, kind="main", side="right")
+    driven = [line for line, row in street.lanes(edges=edges)[0] if row["direction"] == 1]
+    assert max(np.abs(street.offsets(line) + 1.75).max() for line in driven) < 0.15
+
+
 def test_a_lane_in_a_bend_is_even_where_its_edge_line_and_curb_stop_at_the_mouth_of_a_side_street():
     street = Street(length=110.0, radius=55.0, vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="dashed")
     street.paint(-3.5, 5.0, 45.0, kind="edge").paint(-3.5, 70.0, 105.0, kind="edge")
@@ -156,7 +167,8 @@ def test_a_lane_goes_on_where_it_is_driven_while_the_line_beside_it_moves_aside_
     for chain, left in enumerate((4.4 + 1.6 * np.clip((along - 110.0) / 20.0, 0.0, 1.0), np.full(len(along), -4.4))):
         edges.add(LineString(np.c_[street.places(along, left), np.full(len(along), HEIGHT)]), road=0, kind="main", edge="curb", status="measured",
                   part="bottom", chain=chain, side="right" if chain else "left")
-    places = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, _ in street.lanes(edges=edges)[0]])
+    places = np.concatenate([np.c_[np.asarray(line.coords)[:, 0] - EAST, street.offsets(line)] for line, row in street.lanes(edges=edges)[0]
+                             if row["direction"] == 1])
     opening = places[(places[:, 0] > 110.0) & (places[:, 0] < 119.0) & (places[:, 1] < 0.9)]
     assert len(opening) and np.abs(opening[:, 1] + 2.2).max() < 0.15
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drives import ahead, chain, drive, surveyed_points, write_cloud
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.survey import survey_reader
+from lanewright.core.survey import blocks
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store.records import beside_road
 from lanewright.core.survey.survey import SurveySettings
@@ -58,7 +58,7 @@ def test_it_depends_neither_on_the_order_of_points_nor_on_blocks_and_sections(ar
 
 
 def test_worker_processes_and_a_work_folder_keep_what_threads_keep(arm, tmp_path, monkeypatch):
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000))
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=2000))
     trajectory, points, *_ = arm
     path = cloud(tmp_path, points)
     here, settings, work = ground_beyond(open_survey([path], trajectory)), SurveySettings(block=1500), str(tmp_path / "work")

@@ -8,7 +8,7 @@ from copc_files import write_copc
 from drives import ahead, bend, chain, contents, drive, surveyed_points, write_cloud
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey import survey_reader as reading
+from lanewright.core.survey import blocks as reading
 from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
 from lanewright.core.survey.las.reader import read_blocks, read_header
 from lanewright.core.survey.open_survey import open_survey

@@ -15,8 +15,8 @@ from lanewright.core.execution import tasks as interpreter
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.survey import blocks
 from lanewright.core.survey import open_survey as opening
-from lanewright.core.survey import survey_reader
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store import section_store
 from lanewright.core.survey.survey import SurveySettings, survey_in_folder
@@ -26,8 +26,8 @@ SETTINGS = SurveySettings(block=700)   # points
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    # few samples of the height: only the first blocks are read by the caller
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=2000, height_samples=20))
+    # few samples of the height: only the first blocks are looked at by the caller
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=2000, height_samples=20))
     monkeypatch.setattr(section_store, "STRETCH_POINTS", 2000)
 
 
@@ -69,7 +69,7 @@ def known(survey):
 @pytest.fixture(scope="module")
 def by_threads(street):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(survey_reader, "READING", replace(survey_reader.READING, height_samples=20))
+        patch.setattr(blocks, "READING", replace(blocks.READING, height_samples=20))
         return opened(street)
 
 
@@ -86,7 +86,7 @@ def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_th
 
 @pytest.mark.parametrize("block, points", [(10**6, 1), (40, 500)])
 def test_neither_blocks_nor_parts_change_a_point(street, by_threads, python, monkeypatch, block, points):
-    monkeypatch.setattr(survey_reader, "READING", replace(survey_reader.READING, part_points=points))
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=points))
     assert opened(street, WorkerProcesses(python, 1), settings=SurveySettings(block=block)) == by_threads
 
 

@@ -37,7 +37,7 @@ def loaded(output, **row):
         feature[name] = value
     layer.dataProvider().addFeature(feature)
     look = LOOKS.get(output, (None, 0))[0]
-    Styler.make(STYLES / f"{look}.qml", schema, output).postProcessLayer(layer, QgsProcessingContext(), None)
+    Styler(STYLES / f"{look}.qml", schema, output).postProcessLayer(layer, QgsProcessingContext(), None)
     return layer
 
 

@@ -56,7 +56,7 @@ def test_no_password_is_written(source):
 
 
 def test_an_intensity_image_is_known_whatever_its_file_is_called(made):
-    from lanewright.processing_provider.results.origin import output_of
+    from lanewright.processing_provider.results.road_maps import output_of
     from qgis.core import QgsRasterLayer
 
     assert output_of(QgsRasterLayer(str(made / "image.tif"), "mine")) == "INTENSITY_IMAGE"

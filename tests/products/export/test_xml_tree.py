@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.products.export.xml_tree import XmlElement, read_xml, xml_text
+from lanewright.products.export.opendrive.model import OpenDriveMap
+from lanewright.products.export.opendrive.xodr import opendrive_text
+from lanewright.products.export.xml_tree import read_xml
 
 ROOT = Path(__file__).resolve().parents[3]
 LAUGHS = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))
@@ -115,9 +117,9 @@ def test_a_number_that_is_none_is_named_with_its_line(tmp_path, value):
 
 
 def test_what_was_written_is_read_back(tmp_path):
-    root = XmlElement("OpenDRIVE")
-    root.add("geoReference", '+proj=utm "quoted" <&>', s=0.1, id="a&b", none=None, flag=True)
+    written = OpenDriveMap(name="a&b", reference='+proj=utm "quoted" <&>', offset=(0.1, 0.0, -2.5, 0.0))
     path = tmp_path / "map.xodr"
-    path.write_text(xml_text(root), encoding="utf-8")
-    child = read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file").find("geoReference")
-    assert child.text == '+proj=utm "quoted" <&>' and child.attributes == {"s": "0.1", "id": "a&b", "flag": "yes"}
+    path.write_text(opendrive_text(written), encoding="utf-8")
+    header = read_xml(str(path), "OpenDRIVE", "an OpenDRIVE file").find("header")
+    assert header.get("name") == "a&b" and header.find("geoReference").text == '+proj=utm "quoted" <&>'
+    assert header.find("offset").attributes == {"x": "0.1", "y": "0", "z": "-2.5", "hdg": "0"}

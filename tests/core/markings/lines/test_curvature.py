@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.curvature import CURVATURE_KERNEL, _around, _quadrics, marking_curvature
+from lanewright.core.markings.lines.curvature import CURVATURE_KERNEL, _quadrics, marking_curvature
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import Points, to_units
 from scipy.spatial import cKDTree
@@ -24,8 +24,8 @@ def paint(x, y, z):
 
 
 def mean_curvature(xyz, which):
-    owner, member = _around(cKDTree(xyz), xyz, which, CURVATURE_KERNEL)
-    return _quadrics(xyz[member] - xyz[which][owner], np.bincount(owner, minlength=len(which)), CURVATURE_KERNEL)
+    around = cKDTree(xyz).query_ball_point(xyz[which], CURVATURE_KERNEL)
+    return _quadrics(np.concatenate([xyz[members] - xyz[k] for members, k in zip(around, which)]), np.array(list(map(len, around))))
 
 
 def test_a_plane_has_no_curvature_however_it_slopes():

@@ -23,7 +23,7 @@ def split(records):
     """The part of every point of one cluster."""
     columns = [records[name] for name in ("s", "d", "spacing")]
     compound = are_compound(*columns[:2], np.zeros(1, np.int64))
-    return parts_of_compound(*columns)[0] if compound.all() else np.zeros(len(records), np.int64)
+    return parts_of_compound(*columns) if compound.all() else np.zeros(len(records), np.int64)
 
 
 def share_together(labels, owner, number):

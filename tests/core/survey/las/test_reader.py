@@ -20,7 +20,7 @@ def test_every_version_and_point_format_is_read_whole(tmp_path, suffix, version,
     path = write_cloud(tmp_path / f"cloud{suffix}", *places(), point_format=point_format, version=version, crs="EPSG:32632")
     header = read_header(path)
     assert (header.version, header.point_format, header.count) == (version, point_format, 5000)
-    assert header.has_time == (point_format not in (0, 2)) and header.has_channel == (point_format >= 6)
+    assert header.has_time == (point_format not in (0, 2))
     assert "UTM zone 32N" in header.crs, "from GeoKeys up to 1.3, from WKT in 1.4"
     x = np.concatenate([np.asarray(block["x"]) for block in read_blocks(path, 777)])
     np.testing.assert_allclose(x, places()[0], atol=6e-4)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.meaning import columns_of_table, facts_of, time_system_by_size
+from lanewright.core.survey.trajectory.meaning import columns_of_table, facts_of
 from lanewright.core.survey.trajectory.reader import read_trajectory
+from lanewright.core.survey.trajectory.time_systems import time_system_by_size
 
 
 @pytest.fixture
