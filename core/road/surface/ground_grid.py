@@ -378,10 +378,10 @@ class MeasuredGround:
         windows = [window for window in windows if any(window[2:])]
         phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
             item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
-        self._file = self._file or ArrayFile()
+        file = self._file = self._file or ArrayFile()
         # each goes to the file as it comes
         places = yield Asked(phase, windows, 1.0, lambda parts: [
-            [None if values is None else self._file.put([values], values.nbytes) for values in parts]])
+            [None if values is None else file.put([values], values.nbytes) for values in parts]])
         for places_of_window, (road, row, *_) in zip(places, windows):
             for kept, place in zip(self._kept, places_of_window):
                 if place is not None:
