@@ -76,16 +76,20 @@ class Algorithm:
     # -- how subclasses declare -----------------------------------------------------------------
 
     def add(self, spec):
-        """Add a parameter; a table of a module may have been made before the language was known."""
-        self.parameters.append(replace(spec, label=tr(spec.label), help=tr(spec.help) if spec.help else spec.help))
+        """Add a parameter with the label and the help that help.txt has for it; what its help says already comes last."""
+        texts, name = help_texts(), spec.name
+        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
+        label, *helps = (texts.get(f"{self.ID} {name}") or texts.get(f"{spec.settings.partition(':')[2]} {name}")
+                         or [*common, *texts.get(f"{self.ID} + {name}", [])])
+        self.parameters.append(replace(spec, label=tr(label), help=" ".join(filter(None, (*map(tr, helps), spec.help)))))
 
-    def add_input(self, kind, name, label, text, geometry="any", **more):
+    def add_input(self, kind, name, **more):
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""
-        self.add(ParameterSpec(kind, name, label, text, geometry=geometry, **more))
+        self.add(ParameterSpec(kind, name, **more))
 
-    def add_map_layer(self, name, text, optional=False):
+    def add_map_layer(self, name, **more):
         """Add a layer of the road map as an input."""
-        self.add_input("layer", name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, optional=optional)
+        self.add_input("layer", name, geometry=MAP_LAYERS[name].geometry, **more)
 
     def add_survey(self, trajectory_optional=False, without=""):
         """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
@@ -94,19 +98,13 @@ class Algorithm:
         self.add_crs()
 
     def add_point_clouds(self):
-        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"), tr(
-            "LAS, LAZ or COPC files of one survey, or a folder that holds them, a virtual point cloud (VPC) that names them, or names with wildcards "
-            "(/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
+        self.add_input("clouds", "POINT_CLOUDS")
 
     def add_trajectory(self, optional=False, without=""):
-        text = tr("Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or "
-                  "SBET file. Made with Import trajectory it needs no further care.")
-        self.add_input("trajectory", "TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional=optional)
+        self.add_input("trajectory", "TRAJECTORY", help=tr(without) if without else "", optional=optional)
 
     def add_crs(self):
-        self.add_input("crs", "CRS", tr("CRS of the point clouds"),
-                       tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from "
-                          "them."), optional=True, advanced=True)
+        self.add_input("crs", "CRS", optional=True, advanced=True)
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""
@@ -114,25 +112,24 @@ class Algorithm:
             if (only is None or spec.name in only) and self.parameter(spec.name) is None:
                 self.add(spec if advanced is None else replace(spec, advanced=advanced))
 
-    def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):
+    def add_sink(self, name, fields=(), **more):
         """A vector output; the help lists its fields."""
         listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
-        text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
-        self.add(OutputSpec("layer", name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
+        self.add_output("layer", name, help=tr("Fields: {fields}.").format(fields=listed) if fields else "", schema=tuple(fields), **more)
 
-    def add_map_sink(self, name, text="", **more):
+    def add_map_sink(self, name, **more):
         """Add a layer of the road map as an output."""
-        self.add_sink(name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, fields=MAP_LAYERS[name].schema, **more)
+        self.add_sink(name, MAP_LAYERS[name].schema, geometry=MAP_LAYERS[name].geometry, **more)
 
-    def add_output(self, kind, name, label, text="", **more):
+    def add_output(self, kind, name, **more):
         """Add a result of another kind; `more` are further attributes of OutputSpec."""
-        self.add(OutputSpec(kind, name, label, text, **more))
+        self.add(OutputSpec(kind, name, **more))
 
-    def add_report(self, **more):
-        self.add_output("report", "REPORT", tr("Report"), tr("A page with the numbers of every step and a picture."), **{"optional": True, **more})
+    def add_report(self, optional=True):
+        self.add_output("report", "REPORT", optional=optional)
 
 
-# Typed parameters and outputs of the algorithms: name, label and help in one place, for every program that runs them.
+# Typed parameters and outputs of the algorithms, for every program that runs them. A label ends with the unit, if there is one.
 
 def settings_class(path):
     """`core.road.profiles.detect:CurbSettings` -> the class; None where a package it needs is missing."""
@@ -154,7 +151,7 @@ class ParameterSpec:
 
     kind: str
     name: str
-    label: str   # ends with the unit, if there is one
+    label: str = ""
     help: str = ""
     optional: bool = False
     advanced: bool = False   # a dialog shows it folded away
@@ -164,6 +161,7 @@ class ParameterSpec:
     of: str = ""   # the input whose rows an expression is about, or whose schema is asked for
     file_filter: str = ""   # of a file, as file dialogs take it
 
+    settings = ""
     is_output = False
 
 
@@ -180,7 +178,7 @@ class OutputSpec(ParameterSpec):
 
 @dataclass(frozen=True)
 class SettingSpec:
-    """One field of a core Settings class as an input: the default and the limits are the core's, the words are ours.
+    """One field of a core Settings class as an input: the default and the limits are the core's.
 
     `choices` makes it a list of words. Where a number is a multiple of the core's, its maximum is so many `times` the core's.
     """
@@ -188,8 +186,8 @@ class SettingSpec:
     name: str
     settings: str
     field: str
-    label: str
-    help: str
+    label: str = ""
+    help: str = ""
     choices: tuple = ()
     times: float = 1.0
     advanced: bool = False
@@ -221,16 +219,15 @@ class SettingSpec:
         return allowed.lowest, allowed.maximum * self.times
 
 
-def settings_of(table, settings, names, **further):
-    """The SettingSpecs of a core Settings class, with the labels and helps that help.txt has for them under the name of the table.
+def settings_of(settings, names, **further):
+    """The SettingSpecs of a core Settings class, `module:class`; label and help of each stand in help.txt.
 
     names : of the parameters, with spaces between them, in the order of the dialog, which folds those with a star behind them away; a parameter
         is the field of its name in small letters
     further : name to a dict of other attributes of its SettingSpec
     """
-    return tuple(SettingSpec(**{
-        "name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **dict(zip(("label", "help"), map(
-            tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
+    return tuple(SettingSpec(**{"name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **further.get(name, {})})
+                 for name, star in re.findall(r"(\w+)(\*?)", names))
 
 
 NumberOutput = namedtuple("NumberOutput", "name label")   # a number among the results

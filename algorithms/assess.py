@@ -14,22 +14,18 @@ NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a ref
 
 
 def add_excluded(algorithm):
-    algorithm.add_input("expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
-                        tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the "
-                           "rows whose field edge or kind says dropped or none."), optional=True, advanced=True, default="", of="REFERENCE")
+    algorithm.add_input("expression", "EXCLUDED", optional=True, advanced=True, default="", of="REFERENCE")
 
 
 def add_area(algorithm):
-    algorithm.add_input("layer", "AREA", tr("Area"),
-                        tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
-                        "PolygonZ", optional=True)
+    algorithm.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
 
 
-def add_tolerances(algorithm, settings, label, text):
+def add_tolerances(algorithm, settings):
     """The list of tolerances as text: a model can hand it on, and any number of them will do. `settings` names the class, as in SettingSpec."""
     owner = settings_class(settings)
     if owner is not None:
-        algorithm.add_input("text", "TOLERANCES", label, text, default=", ".join(f"{number:g}" for number in owner().tolerances))
+        algorithm.add_input("text", "TOLERANCES", default=", ".join(f"{number:g}" for number in owner().tolerances))
 
 
 def tolerances(call, name="TOLERANCES"):
@@ -147,7 +143,7 @@ def shares_of(numbers, names):
 BOUNDARY = "products.assess.lines:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
-BOUNDARY_SETTINGS = settings_of("assess.BOUNDARY_SETTINGS", BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
+BOUNDARY_SETTINGS = settings_of(BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
 
 
 class AssessBoundaries(Algorithm):
@@ -167,21 +163,15 @@ class AssessBoundaries(Algorithm):
     )
 
     def declare(self):
-        self.add_input("layer", "INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
-        self.add_input("layer", "REFERENCE", tr("Reference boundaries"), tr(
-            "Lines that are known to be right, one on each side of the road, such as the feet of the curbs."), "LineStringZ")
+        self.add_input("layer", "INPUT", geometry="LineStringZ")
+        self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, BOUNDARY, tr("Tolerances (m)"), tr(
-            "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
+        add_tolerances(self, BOUNDARY)
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_input("choice", "EDGES", tr("Edges to judge"),
-                       tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever "
-                          "both layers hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it "
-                          "holds curbs alone: such a reference cannot tell whether they are right."), default=EDGES[0], choices=EDGES)
+        self.add_input("choice", "EDGES", default=EDGES[0], choices=EDGES)
         add_excluded(self)
         add_area(self)
-        self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
-                      geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ")
         self.add_report()
 
     def work(self, call, progress):
@@ -238,7 +228,7 @@ def _errors(errors, before=""):
 
 MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
-MARKING_SETTINGS = settings_of("assess.MARKING_SETTINGS", MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
+MARKING_SETTINGS = settings_of(MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
 
 
 class AssessMarkings(Algorithm):
@@ -257,25 +247,16 @@ class AssessMarkings(Algorithm):
     RETIRED = ("FOUND_SHARE",)
 
     def declare(self):
-        self.add_input("painted", "INPUT", tr("Markings to assess"), tr("Polygons, lines with a width, or a mask."))
-        self.add_input("painted", "REFERENCE", tr("Reference markings"),
-                       tr("Polygons, lines or a raster of what is painted; the values of a raster are its classes."))
+        self.add_input("painted", "INPUT")
+        self.add_input("painted", "REFERENCE")
         self.add_trajectory(optional=True)
-        add_tolerances(self, MARKINGS, tr("Tolerances (cells)"), tr(
-            "Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict."))
+        add_tolerances(self, MARKINGS)
         self.add_settings(MARKING_SETTINGS)
-        self.add_input("text", "CLASS_FIELD", tr("Field with the class"),
-                       tr("Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too."),
-                       optional=True, advanced=True, default="class")
+        self.add_input("text", "CLASS_FIELD", optional=True, advanced=True, default="class")
         add_area(self)
-        self.add_input(
-            "raster", "IMAGE", tr("Image that shows what was scanned"),
-            tr("Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was "
-               "never scanned, but also what the road surface left out: leave it empty to hold that against the result."), optional=True)
-        self.add_sink("OUTPUT", tr("Markings by outcome"), tr("Objects of the reference, correct or missed, and the false ones of the result."),
-                      fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
-        self.add_output("raster", "CELLS", tr("Hits, misses and false alarms"), tr(
-            "1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint."), optional=True, by_default=False)
+        self.add_input("raster", "IMAGE", optional=True)
+        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
+        self.add_output("raster", "CELLS", optional=True, by_default=False)
         self.add_report()
 
     def work(self, call, progress):
@@ -324,7 +305,7 @@ def _marking_numbers(accuracy):
 LINES = "products.assess.lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
-LINE_SETTINGS = settings_of("assess.LINE_SETTINGS", LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
+LINE_SETTINGS = settings_of(LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
 
 
 class AssessDrivingLines(Algorithm):
@@ -343,18 +324,14 @@ class AssessDrivingLines(Algorithm):
     )
 
     def declare(self):
-        self.add_input("layer", "INPUT", tr("Driving lines to assess"), tr("Lines that were made."), "LineStringZ")
-        self.add_input("layer", "REFERENCE", tr("Reference lines"), tr(
-            "Lines that are known to be right, such as those drawn over an orthoimage."), "LineStringZ")
+        self.add_input("layer", "INPUT", geometry="LineStringZ")
+        self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, LINES, tr("Tolerances (m)"), tr("Sizes of the buffer, with commas between them. The report has a row for each."))
-        self.add_input("choice", "WIDTH", tr("Tolerances are"),
-                       tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. "
-                          "Published figures seldom say which they mean; the report shows both."), default=WIDTHS[0], choices=WIDTHS)
+        add_tolerances(self, LINES)
+        self.add_input("choice", "WIDTH", default=WIDTHS[0], choices=WIDTHS)
         self.add_settings(LINE_SETTINGS)
         add_area(self)
-        self.add_sink("OUTPUT", tr("Driving lines by outcome"), tr("The lines cut where the outcome changes: false pieces lie outside the buffer."),
-                      fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
         self.add_report()
 
     def work(self, call, progress):

@@ -30,7 +30,7 @@ from .texts import tr
 if TYPE_CHECKING:
     from ..core.corrections.corrections import Corrections
 
-DRIVING_SETTINGS = settings_of("driving.DRIVING_SETTINGS", "core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
+DRIVING_SETTINGS = settings_of("core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
     COUNTRY=dict(choices=tuple(COUNTRIES)), TRAFFIC_SIDE=dict(choices=("automatic", "right", "left")))
 
 
@@ -41,17 +41,14 @@ class DrivingLines(Algorithm):
     RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
 
     def declare(self):
-        self.add_map_layer("MARKING_LINES", tr("The layer written by Fit marking lines."))
+        self.add_map_layer("MARKING_LINES")
         self.add_trajectory()
-        self.add_map_layer("MARKINGS", tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are "
-                                          "distinguished."), optional=True)
-        self.add_map_layer("ROAD_EDGES", tr("With it lanes without an outer line end at the edge, and lanes go on between the edges from where "
-                                            "their paint ends to the mouth of a junction."), optional=True)
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_map_layer("MARKINGS", optional=True)
+        self.add_map_layer("ROAD_EDGES", optional=True)
+        self.add_input("cloud", "ROAD_POINTS", optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_map_sink("DRIVING_LINES")
-        self.add_map_sink("LANES", tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this "
-                                      "layer."), optional=True)
+        self.add_map_sink("LANES", optional=True)
         self.add_map_sink("CURVE_ELEMENTS", optional=True)
 
     def work(self, call, progress):
@@ -161,12 +158,10 @@ class RoadMap(Algorithm):
     def declare(self):
         # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
         self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
-        self.add_settings((METHOD_SETTING,), advanced=True)
+        self.add_settings(METHOD_SETTING, advanced=True)
         for stage, specs in STAGES.items():
             if stage == "intensity":
-                self.add_input("flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
-                               tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was "
-                                  "corrected already."), default=True, advanced=True)
+                self.add_input("flag", "CORRECT_INTENSITY", default=True, advanced=True)
             self.add_settings(specs, only=OFFERED, advanced=True)
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
@@ -175,11 +170,10 @@ class RoadMap(Algorithm):
         add_execution(self)
         for name in LAYERS:
             self.add_map_sink(name, optional=True)
-        self.add_map_sink("PASSES", tr("Where the vehicle drove, as this run used it: one line a pass."), optional=True)
+        self.add_map_sink("PASSES", optional=True)
         self.add_map_sink("CURB_POINTS", optional=True, by_default=False)
-        self.add_output("cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True,
-                        by_default=False)
-        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_output("cloud", "ROAD_POINTS", optional=True, by_default=False)
+        self.add_output("raster", "INTENSITY_IMAGE", optional=True)
         self.add_report()
 
     def work(self, call, progress):
