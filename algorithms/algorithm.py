@@ -33,7 +33,7 @@ class Algorithm:
     ID = TITLE = GROUP = SUMMARY = ""
     TAGS = ()
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
-    NUMBERS = ()  # (name, label) of numbers among the results
+    NUMBERS = ()  # names of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     DRAWS = False  # it draws pages by QGIS, which does that in the thread of its window alone
@@ -41,7 +41,7 @@ class Algorithm:
     def __init__(self):
         self.parameters = []
         self.declare()
-        self.numbers = [NumberOutput(name, tr(label)) for name, label in (*self.NUMBERS, (WARNINGS, tr("Warnings")))]
+        self.numbers = [NumberOutput(name, tr(self._words(name)[0])) for name in (*self.NUMBERS, WARNINGS)]
 
     # -- what others ask --------------------------------------------------------------------
 
@@ -77,11 +77,15 @@ class Algorithm:
 
     def add(self, spec):
         """Add a parameter with the label and the help that help.txt has for it; what its help says already comes last."""
-        texts, name = help_texts(), spec.name
-        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
-        label, *helps = (texts.get(f"{self.ID} {name}") or texts.get(f"{spec.settings.partition(':')[2]} {name}")
-                         or [*common, *texts.get(f"{self.ID} + {name}", [])])
+        label, *helps = self._words(spec.name, spec.settings)
         self.parameters.append(replace(spec, label=tr(label), help=" ".join(filter(None, (*map(tr, helps), spec.help)))))
+
+    def _words(self, name, settings=""):
+        """The paragraphs of help.txt for a parameter or number: its label, then its help."""
+        texts = help_texts()
+        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
+        return (texts.get(f"{self.ID} {name}") or texts.get(f"{settings.partition(':')[2]} {name}")
+                or [*common, *texts.get(f"{self.ID} + {name}", [])])
 
     def add_input(self, kind, name, **more):
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""

@@ -151,16 +151,8 @@ class AssessBoundaries(Algorithm):
     SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
     TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
-    NUMBERS = (
-        ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
-        ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
-        ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
-        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
-        ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
-        *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
-          for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
-    )
+    NUMBERS = ("PRECISION RECALL F1 IOU CORRECT MISSED FALSE EXCLUDED_INTERVALS MEAN RMSE P95 MAXIMUM HEIGHT_MEAN HEIGHT_RMSE HEIGHT_P95 "
+               "HEIGHT_MAXIMUM PRECISION_LEFT RECALL_LEFT F1_LEFT PRECISION_RIGHT RECALL_RIGHT F1_RIGHT").split()
 
     def declare(self):
         self.add_input("layer", "INPUT", geometry="LineStringZ")
@@ -236,14 +228,8 @@ class AssessMarkings(Algorithm):
     SUMMARY = "Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union."
     TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
-    NUMBERS = (
-        *((name, tr("{what} (%)").format(what=what)) for name, what in (
-            ("PRECISION", "Precision of cells, strict"), ("RECALL", "Recall of cells, strict"), ("F1", "F1 of cells, strict"),
-            ("IOU", "Intersection over union of cells, strict"), ("PRECISION_TOLERANT", "Precision of cells with tolerance"),
-            ("RECALL_TOLERANT", "Recall of cells with tolerance"), ("F1_TOLERANT", "F1 of cells with tolerance"),
-            ("OBJECT_PRECISION", "Precision of objects"), ("OBJECT_RECALL", "Recall of objects"), ("OBJECT_F1", "F1 of objects"))),
-        ("HITS", tr("Cells that are right")), ("MISSES", tr("Cells that were missed")), ("FALSE_ALARMS", tr("Cells that are false")),
-    )
+    NUMBERS = ("PRECISION RECALL F1 IOU PRECISION_TOLERANT RECALL_TOLERANT F1_TOLERANT OBJECT_PRECISION OBJECT_RECALL OBJECT_F1 HITS MISSES "
+               "FALSE_ALARMS").split()
     RETIRED = ("FOUND_SHARE",)
 
     def declare(self):
@@ -313,15 +299,8 @@ class AssessDrivingLines(Algorithm):
     SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."
     TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
-    NUMBERS = (
-        ("COMPLETENESS", tr("Completeness (%)")), ("CORRECTNESS", tr("Correctness (%)")),
-        ("QUALITY", tr("Quality (%)")), ("MISCODING", tr("Miscoding (%)")),
-        ("PRECISION", tr("Precision, the same as correctness (%)")), ("RECALL", tr("Recall, the same as completeness (%)")), ("F1", tr("F1 (%)")),
-        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")), ("GAPS_PER_KM", tr("Gaps per km")),
-        ("MEAN_GAP", tr("Mean length of the gaps (m)")), ("RESULT_LENGTH", tr("Length of the result (m)")),
-        ("REFERENCE_LENGTH", tr("Length of the reference (m)")),
-    )
+    NUMBERS = ("COMPLETENESS CORRECTNESS QUALITY MISCODING PRECISION RECALL F1 MEAN RMSE P95 MAXIMUM HEIGHT_RMSE GAPS_PER_KM MEAN_GAP "
+               "RESULT_LENGTH REFERENCE_LENGTH").split()
 
     def declare(self):
         self.add_input("layer", "INPUT", geometry="LineStringZ")

@@ -17,7 +17,7 @@ class ExportTemplate(Algorithm):
     ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
     SUMMARY = "Writes the road map with a client's own layers, feature codes, fields and units, as a table of the client's says it."
     TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF", "PostGIS")
-    NUMBERS = (("FEATURES", tr("Features")), ("LAYERS", tr("Layers")), ("LEFT_OUT", tr("Features that no row takes")))
+    NUMBERS = "FEATURES LAYERS LEFT_OUT".split()
 
     def declare(self):
         self.add_input("file", "TEMPLATE", file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")

@@ -21,8 +21,7 @@ class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
     SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
     TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
-    NUMBERS = (("FILES", tr("Files")), ("POINTS", tr("Points")), ("ROAD_POINTS", tr("Points of the road surface")),
-               ("PAINT_POINTS", tr("Points of paint")), ("CURB_POINTS", tr("Points of curbs")))
+    NUMBERS = "FILES POINTS ROAD_POINTS PAINT_POINTS CURB_POINTS".split()
 
     def declare(self):
         self.add_survey()

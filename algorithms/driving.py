@@ -74,21 +74,8 @@ class DrivingLines(Algorithm):
 
 MEASURED = "measured"
 
-NUMBERS = (
-    ("ROADS", tr("Roads")),
-    ("ROAD_LENGTH", tr("Length of the roads (m)")),
-    ("EDGE_LENGTH", tr("Length of the road edges (m)")),
-    ("EDGES_MEASURED", tr("Of the road edges measured (%)")),
-    ("LINE_LENGTH", tr("Length of the marking lines (m)")),
-    ("LINES_MEASURED", tr("Of the marking lines measured (%)")),
-    ("LANE_COUNT", tr("Lanes")),
-    ("LANE_LENGTH", tr("Length of the driving lines (m)")),
-    ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
-    ("MARKING_COUNT", tr("Markings")),
-    ("TRUST", tr("Confidence of the driving lines, mean along them (0 to 1)")),
-    ("CORRECTIONS_MADE", tr("Corrections made")),
-    ("CORRECTIONS_UNMATCHED", tr("Corrections that match nothing")),
-)
+NUMBERS = ("ROADS ROAD_LENGTH EDGE_LENGTH EDGES_MEASURED LINE_LENGTH LINES_MEASURED LANE_COUNT LANE_LENGTH LANES_MEASURED MARKING_COUNT "
+           "TRUST CORRECTIONS_MADE CORRECTIONS_UNMATCHED").split()
 
 
 def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,

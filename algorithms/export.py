@@ -15,7 +15,7 @@ from .survey_input import road_points_of
 from .texts import languages, told, tr
 
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
-MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
+MAP_NUMBERS = "LANE_COUNT LENGTH".split()
 
 
 def add_map_layers(algorithm):
@@ -140,8 +140,7 @@ class RoadAttributes(Algorithm):
     SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
     TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
     LOOKS = {"OUTPUT": "LANES"}
-    NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("KNOWN", tr("Lanes of which something is known")),
-               ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
+    NUMBERS = "LANE_COUNT KNOWN SPEEDS NAMES".split()
 
     def declare(self):
         self.add_map_layer("LANES")
@@ -209,11 +208,7 @@ class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
     SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
     TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
-    NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
-               ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
-               ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
-               ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
-               ("FINDINGS", tr("Findings of the check")))
+    NUMBERS = "ROADS JUNCTIONS SUCCESSORS BORDER_MAXIMUM HEIGHT_MAXIMUM DRIVING_LINE_P95 FINDINGS".split()
 
     def declare(self):
         add_road_map_layers(self)
@@ -301,8 +296,7 @@ class ExportLanelet2(Algorithm):
     ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
     SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
-    NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
-               ("FINDINGS", tr("Findings of the check")))
+    NUMBERS = "LANELETS WAYS NODES SUCCESSORS FINDINGS".split()
 
     def declare(self):
         add_road_map_layers(self)
@@ -364,7 +358,7 @@ class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
     SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
     TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
-    NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+    NUMBERS = "LINES ALIGNMENTS MISSED".split()
 
     def declare(self):
         add_road_map_layers(self)
@@ -453,7 +447,7 @@ class PrintSheets(Algorithm):
     ID, TITLE, GROUP = "printsheets", "Sheets along the road", "Export"
     SUMMARY = "Draws the road map on sheets of paper that follow the road, with longitudinal profile and cross-sections, as one PDF."
     TAGS = ("print", "plan", "sheet", "PDF", "layout", "atlas", "profile", "title block", "map")
-    NUMBERS = (("SHEETS", tr("Plan sheets")), ("PAGES", tr("Pages")), ("SCALE_NUMBER", tr("Denominator of the scale")))
+    NUMBERS = "SHEETS PAGES SCALE_NUMBER".split()
     DRAWS = True
 
     def declare(self):
@@ -503,8 +497,7 @@ class ConvertMap(Algorithm):
     ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
     SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
     TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
-    NUMBERS = (("SUCCESSORS", tr("Links from one lane to the next")), ("FINDINGS", tr("Findings of the check")),
-               ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
+    NUMBERS = "SUCCESSORS FINDINGS SIGNAL_COUNT LEFT_OUT".split()
 
     def declare(self):
         add_any_map(self)
@@ -536,8 +529,7 @@ class CheckMap(Algorithm):
     SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
     TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
-    NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
-               ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
+    NUMBERS = "FINDINGS FAULTS LANES SUCCESSORS NEIGHBOURS".split()
 
     def declare(self):
         add_any_map(self)

@@ -41,10 +41,7 @@ class CrossSections(Algorithm):
     SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
     TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
-    NUMBERS = (("SECTIONS", tr("Sections")),
-               ("EXCEEDED", tr("Lanes and carriageways that exceed a limit")),
-               ("LARGEST_RUT", tr("Greatest rut depth (mm)")),
-               ("LEAST_CLEARANCE", tr("Least clearance (m)")))
+    NUMBERS = "SECTIONS EXCEEDED LARGEST_RUT LEAST_CLEARANCE".split()
 
     def declare(self):
         self.add_survey()
@@ -96,9 +93,7 @@ class SurfaceOfRoad(Algorithm):
     ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
     SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
     TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
-    NUMBERS = (("VERTICES", tr("Vertices of the triangles")), ("TRIANGLES", tr("Triangles")),
-               ("RMSE", tr("Ground of the carriageway against the triangles, root mean square (m)")),
-               ("SHARE", tr("Vertices for every hundred points of the ground")))
+    NUMBERS = "VERTICES TRIANGLES RMSE SHARE".split()
 
     def declare(self):
         self.add_survey()
@@ -149,7 +144,7 @@ class Roadside(Algorithm):
     SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
     TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
-    NUMBERS = (("LENGTH", tr("Length of all lines but gutters (m)")), ("POLES", tr("Poles, signs and trunks")))
+    NUMBERS = "LENGTH POLES".split()
 
     def declare(self):
         self.add_survey()

@@ -209,7 +209,7 @@ class ColoursOfPaint(Algorithm):
     SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
     TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
     LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
-    NUMBERS = (("WHITE", tr("White markings")), ("YELLOW", tr("Yellow markings")), ("OPEN", tr("Markings whose colour stays open")))
+    NUMBERS = "WHITE YELLOW OPEN".split()
 
     def declare(self):
         self.add_map_layer("MARKINGS")

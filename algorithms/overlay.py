@@ -42,13 +42,7 @@ class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
     SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
-    NUMBERS = (
-        ("PROPOSED", tr("Pairs proposed")),
-        ("ACCEPTED", tr("Pairs accepted")),
-        ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
-        ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
-        ("TURN", tr("Turn of the image, from its rows to east (°)")),
-    )
+    NUMBERS = "PROPOSED ACCEPTED RMSE GROUND_PIXEL TURN".split()
 
     def declare(self):
         self.add_input("raster", "IMAGE")
@@ -108,15 +102,7 @@ class GeoreferenceImage(Algorithm):
     SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
-    NUMBERS = (
-        ("POINTS", tr("Control points")),
-        ("RMSE", tr("RMSE of the control points (m)")),
-        ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
-        ("CHECK_POINTS", tr("Check points")),
-        ("CHECK_RMSE", tr("RMSE of the check points (m)")),
-        ("LARGEST", tr("Largest residual of a control point (m)")),
-        ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
-    )
+    NUMBERS = "POINTS RMSE LEFT_OUT_RMSE CHECK_POINTS CHECK_RMSE LARGEST OUTSIDE".split()
 
     def declare(self):
         self.add_input("raster", "IMAGE")

@@ -14,7 +14,7 @@ class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
     SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer."
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
-    NUMBERS = (("ROWS", tr("Positions")),)
+    NUMBERS = "ROWS".split()
 
     def declare(self):
         self.add_input("trajectory", "INPUT")
@@ -48,13 +48,7 @@ class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
     SUMMARY = "Where the scanner was, from the point clouds alone, for surveys that come without a trajectory."
     TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
-    NUMBERS = (
-        ("ROWS", tr("Positions")),
-        ("LENGTH", tr("Length driven (m)")),
-        ("SCANNERS", tr("Scanners that took part")),
-        ("SIGMA", tr("Uncertainty of the place, median (m)")),
-        ("SIGMA_Z", tr("Uncertainty of the height, median (m)")),
-    )
+    NUMBERS = "ROWS LENGTH SCANNERS SIGMA SIGMA_Z".split()
 
     def declare(self):
         self.add_point_clouds()
@@ -75,7 +69,7 @@ class EstimateTrajectory(Algorithm):
         call.layer("TRAJECTORY", trajectory_features(track, sigma_m=estimate.sigma, sigma_z_m=estimate.sigma_height))
         call.text("REPORT", estimated_trajectory_report(estimate))
         values = len(track), estimate.length, len(estimate.scanners), float(np.median(estimate.sigma)), float(np.median(estimate.sigma_height))
-        return {name: value for (name, _), value in zip(self.NUMBERS, values)}
+        return dict(zip(self.NUMBERS, values))
 
 
 INSPECTION_SETTINGS = settings_of("products.inspection:InspectionSettings", "CELL_SIZE*")
@@ -85,16 +79,7 @@ class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
     SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
     TAGS = ("density", "report", "las", "header", "overlap")
-    NUMBERS = (
-        ("POINTS", tr("Points")),
-        ("POINTS_PER_M2", tr("Points per m², mean of occupied cells")),
-        ("POINTS_PER_M3", tr("Points per m³, mean of occupied cubes")),
-        ("FIRST_TIME", tr("First gps_time (s)")),
-        ("LAST_TIME", tr("Last gps_time (s)")),
-        ("SCANNERS", tr("Scanners")),
-        ("NEAR_TRAJECTORY", tr("Points near the trajectory (%)")),
-        ("TIME_COVERED", tr("Scan time covered by the trajectory (%)")),
-    )
+    NUMBERS = "POINTS POINTS_PER_M2 POINTS_PER_M3 FIRST_TIME LAST_TIME SCANNERS NEAR_TRAJECTORY TIME_COVERED".split()
     RETIRED = ("CUBE_SIZE",)
 
     def declare(self):
@@ -126,7 +111,7 @@ class InspectSurvey(Algorithm):
             inspection.count, inspection.per_area["mean"], inspection.per_volume["mean"], first, last, len(inspection.scanners),
             _percent(inspection.near_share), _percent(inspection.in_time_share),
         )
-        return {name: float(value) for (name, _), value in zip(self.NUMBERS, values) if value is not None}
+        return {name: float(value) for name, value in zip(self.NUMBERS, values) if value is not None}
 
 
 def _percent(share):
@@ -146,7 +131,7 @@ class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
     SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
     TAGS = ("sample", "simulation", "test data")
-    NUMBERS = (("POINTS", tr("Points")),)
+    NUMBERS = "POINTS".split()
     RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")
 
     def declare(self):
