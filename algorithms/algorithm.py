@@ -23,15 +23,14 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm. Subclasses set the texts below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
-    which returns further results (numbers) by output name; their help stands in help.txt.
+    """Base of every algorithm. Subclasses set the names below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
+    which returns further results (numbers) by output name; all that users read of them stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
     """
 
-    ID = TITLE = GROUP = SUMMARY = ""
-    TAGS = ()
+    ID = TITLE = GROUP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # names of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
@@ -53,15 +52,16 @@ class Algorithm:
         return f"{GROUPS.index(self.GROUP) + 1} {tr(self.GROUP)}"
 
     def summary(self):
-        return tr(self.SUMMARY)
+        return tr(help_texts()[self.ID][0])
 
     def help_paragraphs(self):
         """The explanation below the summary."""
-        return [tr(part) for part in help_texts().get(self.ID, ())]
+        return [tr(part) for part in help_texts()[self.ID][2:]]
 
     def tags(self):
         """Search words in the user's language and in English, which the field speaks everywhere."""
-        return list(dict.fromkeys((*(tr(tag) for tag in self.TAGS), *self.TAGS, *TAGS_OF_ALL)))
+        tags = help_texts()[self.ID][1].removeprefix("Tags: ").split(", ")
+        return list(dict.fromkeys((*map(tr, tags), *tags, *TAGS_OF_ALL)))
 
     def parameter(self, name):
         """The ParameterSpec of that name, None where there is none."""

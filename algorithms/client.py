@@ -15,8 +15,6 @@ TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "D
 
 class ExportTemplate(Algorithm):
     ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
-    SUMMARY = "Writes the road map with a client's own layers, feature codes, fields and units, as a table of the client's says it."
-    TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF", "PostGIS")
     NUMBERS = "FEATURES LAYERS LEFT_OUT".split()
 
     def declare(self):

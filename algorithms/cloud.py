@@ -19,8 +19,6 @@ CLOUD_LAYERS = {"ROAD_SURFACE": "road station_m", "ROAD_EDGES": "road station_m 
 
 class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
-    SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
-    TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
     NUMBERS = "FILES POINTS ROAD_POINTS PAINT_POINTS CURB_POINTS".split()
 
     def declare(self):

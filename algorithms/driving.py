@@ -36,8 +36,6 @@ DRIVING_SETTINGS = settings_of("core.driving.settings:DrivingSettings", "COUNTRY
 
 class DrivingLines(Algorithm):
     ID, TITLE, GROUP = "drivinglines", "Driving lines", "Driving"
-    SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
-    TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
     RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
 
     def declare(self):
@@ -136,8 +134,6 @@ ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
 
 class RoadMap(Algorithm):
     ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
-    SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
-    TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
     NUMBERS = NUMBERS
     RETIRED = ("INTERVAL", "SCANLINE_MIN_HEIGHT", "LINE_DISTANCE")

@@ -137,8 +137,6 @@ ATTRIBUTE_SETTINGS = settings_of("products.export.road_attributes:AttributeSetti
 
 class RoadAttributes(Algorithm):
     ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
-    SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
-    TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
     LOOKS = {"OUTPUT": "LANES"}
     NUMBERS = "LANE_COUNT KNOWN SPEEDS NAMES".split()
 
@@ -206,8 +204,6 @@ def add_road_choices(algorithm):
 
 class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
-    SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
-    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = "ROADS JUNCTIONS SUCCESSORS BORDER_MAXIMUM HEIGHT_MAXIMUM DRIVING_LINE_P95 FINDINGS".split()
 
     def declare(self):
@@ -294,8 +290,6 @@ def add_lanelet_choices(algorithm):
 
 class ExportLanelet2(Algorithm):
     ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
-    SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
-    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = "LANELETS WAYS NODES SUCCESSORS FINDINGS".split()
 
     def declare(self):
@@ -356,8 +350,6 @@ CAD_SETTINGS = settings_of(ROADS, "TOLERANCE")
 
 class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
-    SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
-    TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
     NUMBERS = "LINES ALIGNMENTS MISSED".split()
 
     def declare(self):
@@ -445,8 +437,6 @@ SHEET_SETTINGS = settings_of("algorithms.export:SheetSettings",
 
 class PrintSheets(Algorithm):
     ID, TITLE, GROUP = "printsheets", "Sheets along the road", "Export"
-    SUMMARY = "Draws the road map on sheets of paper that follow the road, with longitudinal profile and cross-sections, as one PDF."
-    TAGS = ("print", "plan", "sheet", "PDF", "layout", "atlas", "profile", "title block", "map")
     NUMBERS = "SHEETS PAGES SCALE_NUMBER".split()
     DRAWS = True
 
@@ -467,8 +457,6 @@ class PrintSheets(Algorithm):
 
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
-    SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
-    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
@@ -481,8 +469,6 @@ class ImportOpenDrive(Algorithm):
 
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
-    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
@@ -495,8 +481,6 @@ class ImportLanelet2(Algorithm):
 
 class ConvertMap(Algorithm):
     ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
-    SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
-    TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
     NUMBERS = "SUCCESSORS FINDINGS SIGNAL_COUNT LEFT_OUT".split()
 
     def declare(self):
@@ -526,8 +510,6 @@ ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of th
 
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
-    SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
-    TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
     NUMBERS = "FINDINGS FAULTS LANES SUCCESSORS NEIGHBOURS".split()
 

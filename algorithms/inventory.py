@@ -38,8 +38,6 @@ SECTION_SETTINGS = settings_of(SECTIONS, "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL
 
 class CrossSections(Algorithm):
     ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
-    SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
-    TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
     LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
     NUMBERS = "SECTIONS EXCEEDED LARGEST_RUT LEAST_CLEARANCE".split()
 
@@ -91,8 +89,6 @@ SURFACE_SETTINGS = settings_of("products.surface.model:SurfaceSettings", "TOLERA
 
 class SurfaceOfRoad(Algorithm):
     ID, TITLE, GROUP = "surfacemodel", "Surface model", "Inventory"
-    SUMMARY = "Makes the ground of the road for design: breaklines, and triangles between them that keep to a tolerance, for CAD and as a raster."
-    TAGS = ("TIN", "DTM", "DEM", "terrain", "breakline", "LandXML", "DXF", "triangulation")
     NUMBERS = "VERTICES TRIANGLES RMSE SHARE".split()
 
     def declare(self):
@@ -141,8 +137,6 @@ ROADSIDE_SETTINGS = settings_of("products.inventory.borders:RoadsideSettings",
 
 class Roadside(Algorithm):
     ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
-    SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
-    TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
     LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
     NUMBERS = "LENGTH POLES".split()
 

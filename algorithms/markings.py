@@ -14,8 +14,6 @@ INTENSITY_SETTINGS = settings_of("core.intensity.correction:IntensitySettings", 
 
 class CorrectIntensity(Algorithm):
     ID, TITLE, GROUP = "correctintensity", "Correct intensity", "Markings"
-    SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
-    TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
         self.add_input("cloud", "ROAD_POINTS")
@@ -46,8 +44,6 @@ IMAGE_SETTINGS = settings_of(IMAGE, "CELL_SIZE")
 
 class IntensityImage(Algorithm):
     ID, TITLE, GROUP = "intensityimage", "Intensity image", "Markings"
-    SUMMARY = "Interpolates the intensity of road points into a GeoTIFF: near and bright points count more."
-    TAGS = ("intensity", "image", "raster", "orthophoto")
     RETIRED = ("POWER", "BETA", "RADIUS_CELLS")
 
     def declare(self):
@@ -81,8 +77,6 @@ def marking_settings(call):
 
 class ExtractMarkings(Algorithm):
     ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
-    SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
-    TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
     RETIRED = ("SHORTEST_PAINT", "CLOSE", "PROFILE_LENGTH", "PROMINENCE", "NARROWEST", "WIDEST", "JUMP", "PEAK_GAP", "SHORTEST_LINE",
                "SEGMENT_LENGTH", "SEGMENT_WIDTH", "SEGMENT_SEPARATION", "NEIGHBOUR_RADIUS")
 
@@ -115,8 +109,6 @@ OUTLIER_SETTINGS = settings_of("core.markings.outliers:OutlierSettings", "NEIGHB
 
 class RemoveOutliers(Algorithm):
     ID, TITLE, GROUP = "removeoutliers", "Remove outliers", "Markings"
-    SUMMARY = "Statistical outlier removal: points that lie farther from their neighbours than is usual go."
-    TAGS = ("outlier", "noise", "sor")
 
     def declare(self):
         self.add_input("cloud", "INPUT")
@@ -138,9 +130,6 @@ CLUSTER_SETTINGS = settings_of("core.markings.objects.cluster:ClusterSettings", 
 
 class ClusterMarkings(Algorithm):
     ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
-    SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
-    TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
-            "bicycle symbol", "bus lane")
     RETIRED = ("MIN_POINTS",)
 
     def declare(self):
@@ -167,9 +156,7 @@ LINE_SETTINGS = settings_of("core.markings.lines.fit:MarkingLineSettings", "COUN
 
 class FitMarkingLines(Algorithm):
     ID, TITLE, GROUP = "fitmarkinglines", "Fit marking lines", "Markings"
-    SUMMARY = "Links dashes along the road and fits a curve to every painted line."
     LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
-    TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
     RETIRED = ("LINK_GAP", "LINK_BRIDGE", "MIN_PAINT")
 
     def declare(self):
@@ -206,8 +193,6 @@ COLOUR_SETTINGS = settings_of("products.cloud.colours:ColourSettings", "AROUND*"
 
 class ColoursOfPaint(Algorithm):
     ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
-    SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
-    TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
     LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
     NUMBERS = "WHITE YELLOW OPEN".split()
 

@@ -40,8 +40,6 @@ PROPOSE_SETTINGS = settings_of("products.overlay.matching.propose:ProposalSettin
 
 class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
-    SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
-    TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
     NUMBERS = "PROPOSED ACCEPTED RMSE GROUND_PIXEL TURN".split()
 
     def declare(self):
@@ -99,8 +97,6 @@ GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceS
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
-    SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
-    TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
     NUMBERS = "POINTS RMSE LEFT_OUT_RMSE CHECK_POINTS CHECK_RMSE LARGEST OUTSIDE".split()
 

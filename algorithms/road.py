@@ -12,8 +12,6 @@ LAYER_SETTINGS = settings_of("products.scanline_layer:ScanlineLayerSettings", "S
 
 class NormalizedScanlines(Algorithm):
     ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
-    SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
-    TAGS = ("scanline", "profile", "cross section", "resample")
 
     def declare(self):
         self.add_survey()
@@ -45,8 +43,6 @@ BOUNDARY_SETTINGS = settings_of("core.road.scanlines.detect:ScanlineBoundarySett
 
 class BoundariesFromScanlines(Algorithm):
     ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
-    SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
-    TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
     LOOKS = {"CORNERS": "CURB_POINTS"}
 
     def declare(self):
@@ -80,8 +76,6 @@ CURB_SETTINGS = settings_of("core.road.profiles.detect:CurbSettings",
 
 class DetectCurbs(Algorithm):
     ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
-    SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    TAGS = ("curb", "kerb", "road edge")
 
     def declare(self):
         self.add_survey()
@@ -108,8 +102,6 @@ EDGE_SETTINGS = settings_of("core.road.edges.fit:EdgeSettings", "MAX_GAP FALLBAC
 
 class FitRoadEdges(Algorithm):
     ID, TITLE, GROUP = "fitroadedges", "Fit road edges", "Road"
-    SUMMARY = "Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so."
-    TAGS = ("curb", "kerb", "road edge", "spline")
 
     def declare(self):
         self.add_map_layer("CURB_POINTS")
@@ -136,8 +128,6 @@ OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
 
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
-    SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
-    TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
     RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
                "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")
 
@@ -167,8 +157,6 @@ SURFACE_SETTINGS = settings_of("core.road.surface.extract:SurfaceSettings", "MAX
 
 class ExtractRoadSurface(Algorithm):
     ID, TITLE, GROUP = "extractroadsurface", "Extract road surface", "Road"
-    SUMMARY = "Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth."
-    TAGS = ("road surface", "ground")
     RETIRED = ("HEIGHT_TOLERANCE",)
 
     def declare(self):

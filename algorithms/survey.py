@@ -12,8 +12,6 @@ TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
 
 class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
-    SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, a log or track of a receiver, or a point or line layer."
-    TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time", "nmea", "gpx", "rtklib")
     NUMBERS = "ROWS".split()
 
     def declare(self):
@@ -46,8 +44,6 @@ SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNE
 
 class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
-    SUMMARY = "Where the scanner was, from the point clouds alone, for surveys that come without a trajectory."
-    TAGS = ("trajectory", "no trajectory", "scanner position", "rotating mirror", "gps time")
     NUMBERS = "ROWS LENGTH SCANNERS SIGMA SIGMA_Z".split()
 
     def declare(self):
@@ -77,8 +73,6 @@ INSPECTION_SETTINGS = settings_of("products.inspection:InspectionSettings", "CEL
 
 class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
-    SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
-    TAGS = ("density", "report", "las", "header", "overlap")
     NUMBERS = "POINTS POINTS_PER_M2 POINTS_PER_M3 FIRST_TIME LAST_TIME SCANNERS NEAR_TRAJECTORY TIME_COVERED".split()
     RETIRED = ("CUBE_SIZE",)
 
@@ -129,8 +123,6 @@ TRUTHS = {"TRUTH_BOUNDARIES": "LineStringZ", "TRUTH_MARKINGS": "PolygonZ", "TRUT
 
 class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
-    SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
-    TAGS = ("sample", "simulation", "test data")
     NUMBERS = "POINTS".split()
     RETIRED = ("MOUNT_YAW", "CURB_HEIGHT", "GUTTER")
 
