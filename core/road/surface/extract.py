@@ -13,9 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.ndimage import median_filter
 
+from ...common.arrays import mask_runs
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
+from ...execution.in_step import in_step
 from ...execution.phase import Phase
 from ...survey.density import counted_cubes, cube_density
 from ...survey.frame.road_frame import RoadFrame
@@ -104,7 +106,7 @@ def carriageways(survey: Survey, edges: RoadEdges | None, settings: SurfaceSetti
         profiled = missing.reshape(-1, SURFACE.window_rows).any(axis=1).tolist()
         beside[road] = windows, profiled, stations, measured
         wanted += [(road, row, want) for row, want in zip(windows, profiled)]
-    ground.measure(wanted, progress.part(0.0, SURFACE.measured_progress))
+    in_step([ground.measured(wanted)], survey.executor.passing(), progress.part(0.0, SURFACE.measured_progress))
     for k, (road, of_road) in enumerate(beside.items(), start=1):
         yield road, _carriageway(survey, road, settings, ground, *of_road)
         progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * k / len(beside))
@@ -236,9 +238,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
     Returns (R,) m, `limit` or farther
     """
     result = limit.copy()
-    starts = np.flatnonzero(closed & ~np.r_[False, closed[:-1]])
-    ends = np.flatnonzero(closed & ~np.r_[closed[1:], False]) + 1
-    for first, end in zip(starts, ends):
+    for first, end in mask_runs(closed):
         rows = slice(first, end)
         if (end - first) * SURFACE.row_length < SURFACE.min_mouth_width and not _goes_on_wider(limit, first, end):
             continue
