@@ -59,7 +59,8 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     met = known.and_steps([curb.steps for curb in curbs])
     ends = [(curb, at_tail, _end_of(curb, at_tail, survey, road)) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
             for at_tail in (True, False)]
-    open_ends = [(end, curb, at_tail) for curb, at_tail, end in ends if end is not None and _leaves(end, survey.frame.roads, met)]
+    open_ends = [(end, curb, at_tail) for curb, at_tail, end in ends if end is not None and _leaves(end, survey.frame.roads)
+                 and not met.within(np.array([end.x + end.tx]), np.array([end.y + end.ty]), 0.5).any()]
     phase = Phase(_course_beyond, decimation, (), lambda end: "the curbs of side streets")
     courses = yield Asked(phase, [end for end, *_ in open_ends], 1.0)
     line = survey.frame.road(road)
@@ -89,11 +90,11 @@ def _end_of(curb, at_tail, survey, road):
     return end
 
 
-def _leaves(end, roads, met):
-    """Does the curb leave the corridors of all roads where it leads straight on, and is it not known there?"""
+def _leaves(end, roads):
+    """Does the curb leave the corridors of all roads where it leads straight on?"""
     t = np.arange(0.0, RETURN.max_corridor_distance + 0.1, 1.0)
     inside = np.any([np.isfinite(road.locate(*end.ahead(t))[0]) for road in roads], axis=0)
-    return not inside.all() and not met.within(*end.ahead(np.ones(1)), 0.5).any()
+    return not inside.all()
 
 
 def _ground(decimation, end):
