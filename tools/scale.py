@@ -24,7 +24,6 @@ from plugin_package import load
 load()
 
 from lanewright.core.execution.phase import Executor, name_of, write_plain  # noqa: E402
-from lanewright.core.execution.tasks import ShippedPhase  # noqa: E402
 from lanewright.core.pipeline import road_map as pipeline  # noqa: E402
 from lanewright.core.pipeline.road_map import Stages  # noqa: E402
 from lanewright.core.survey import open_survey  # noqa: E402
@@ -43,7 +42,7 @@ class Recorder(Executor):
         recipe = phase.source.recipe(self.folder)
         began = time.process_time()
         found = dict(name=phase.function.__name__, seconds=[], opening=0.0, results=[],
-                     sent=self.size(ShippedPhase(name_of(phase.function), recipe, tuple(phase.arguments))))
+                     sent=self.size((name_of(phase.function), recipe, tuple(phase.arguments))))
         self.phases.append(found)
         self.inside += time.process_time() - began
         for item in items:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -105,9 +106,9 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
     """
     result = Corrections()
-    source, survey = parse_crs(features.crs), parse_crs(crs)
-    alike = source is None or survey is None or same_crs(source, survey)
-    geometries = features.geometries if alike else in_other_crs(features.geometries, source, survey)
+    geometries, source, survey = features.geometries, parse_crs(features.crs), parse_crs(crs)
+    if source is not None and survey is not None and not same_crs(source, survey):
+        geometries = in_other_crs(geometries, source, survey)
     for number, (geometry, row) in enumerate(zip(geometries, features.rows), start=1):
         action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
         for name, value, allowed in (("action", action, ACTIONS), ("target", target, TARGETS)):
@@ -135,7 +136,7 @@ def taken_reading(row: dict[str, Any], target: str) -> dict[str, str] | None:
 
 def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[float, float, int], ...], str]:
     """The lanes, and the kind of line, of a second reading in JSON."""
-    try:
+    with suppress(ValueError, KeyError, TypeError):
         reading = json.loads(text or "")
         if target == "lane":
             lanes = tuple((float(lane["offset_m"]), float(lane["width_m"]), int(lane["direction"])) for lane in reading["lanes"])
@@ -143,8 +144,6 @@ def _second_reading(text: Any, target: str, number: int) -> tuple[tuple[tuple[fl
                 return lanes, ""
         elif target == "marking":
             return (), str(reading["kind"])
-    except (ValueError, KeyError, TypeError):
-        pass
     raise RoadExtractionError(f"Row {number} of the corrections is to take a second reading of a {target}, but its field other holds none. "
                               "Copy the field other of that lane or marking line.")
 

@@ -55,7 +55,8 @@ def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]], elements: bool = 
     elements : whether the lines are elements of an alignment: straight lines, circles or clothoids, however far off
     """
     choices = [_ModelSelection(np.inf if elements else FITS.max_residual_p95) for _ in lines]
-    for name, fewest, fit_all in ALIGNMENT_CURVES if elements else (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)):
+    kinds: Sequence[tuple[str, int, Callable[..., list[CurveFit]]]] = ALIGNMENT_CURVES
+    for name, fewest, fit_all in kinds if elements else (*kinds, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)):
         # kinds that cannot change a selection are not fitted
         open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
                      and (name != "ellipse" or choice.turn > FITS.min_ellipse_turn)]

@@ -5,18 +5,19 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from heapq import heappop, heappush
 from typing import Any
 
 import numpy as np
 
 from ..common.parallel import check_cancelled
-from ..common.progress import Progress
 from ..countries.catalogue import NEUTRAL, Country
 from ..curves.base import Arc, CurveFit
 from ..curves.model_selection import fit_curves
 from ..curves.segmentation import element_ranges
-from ..execution.phase import Executor, NoSource, Phase
+from ..execution.in_step import Asked, Work
+from ..execution.phase import NoSource, Phase
 from ..io.crs import FOOT
 from ..markings.cross_section.sections import STATION_STEP
 from ..survey.frame.road import Road
@@ -56,8 +57,8 @@ class LanesOfRoad:
     of_others: Sequence[LaneTrack] = ()
 
 
-def fitted_lanes(roads: Sequence[LanesOfRoad], executor: Executor, progress: Progress = Progress()) -> list[tuple[list[Course], list[list[Element]]]]:
-    """The courses of the lanes of each road, and the arcs and straights of every lane, in order of station; `executor` : who fits curves.
+def fitted_lanes(roads: Sequence[LanesOfRoad]) -> Work:
+    """The work that gives the courses of the lanes of each road, and the arcs and straights of every lane, in order of station.
 
     Lanes of a road run parallel, so that their bends are concentric: what they have in common (the mean of their offsets, each less its own) is
     divided into elements once, with all of their evidence, and each lane's elements are the parallels. A lane that is not parallel to the others is
@@ -65,12 +66,13 @@ def fitted_lanes(roads: Sequence[LanesOfRoad], executor: Executor, progress: Pro
     """
     groups = [_parallel_groups(lanes) for lanes in roads]
     long = [axis for of_road in groups for _, axis in of_road if len(axis.at) >= ALIGNMENT.min_places_per_fit]
-    ranges = Phase(_ranges_of_axis, NoSource(), (), lambda item: "the alignment of lanes")
-    parts = {id(axis): cuts for axis, cuts in zip(long, executor.run(ranges, [axis.thinned for axis in long], progress.part(0.0, 0.2)))}
-    places = [(*axis.part(first, last), True) for axis in long for first, last, _ in parts[id(axis)]]
-    places += [(*_known_places(track, lanes), False) for lanes in roads for track in lanes.tracks]
-    curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes")
-    fits = iter(list(executor.run_together(curves, places, ALIGNMENT.fitted_together, progress.part(0.2, 0.9))))
+    curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes", listed=ALIGNMENT.fitted_together)
+    places = [_known_places(track, lanes) for lanes in roads for track in lanes.tracks]
+    asked = [*((*axis.thinned, "divided") for axis in long), *((*place, "whole") for place in places)]
+    known = yield Asked(curves, asked, 0.6)
+    parts, courses = {id(axis): cuts for axis, cuts in zip(long, known)}, iter(known[len(long):])
+    elements_of = [(*axis.part(first, last), "element") for axis in long for first, last, _ in parts[id(axis)]]
+    fits = iter((yield Asked(curves, elements_of, 1.0)))
     divided = {key: [(first, last, next(fits).curve) for first, last, _ in cuts] for key, cuts in parts.items()}
     elements: list[list[list[Element]]] = [[[] for _ in lanes.tracks] for lanes in roads]
     for lanes, of_road, of_lane in zip(roads, groups, elements):
@@ -78,20 +80,18 @@ def fitted_lanes(roads: Sequence[LanesOfRoad], executor: Executor, progress: Pro
             cuts = [(*map(float, np.interp([first, last], axis.u, axis.at)), curve) for first, last, curve in divided.get(id(axis), ())]
             for i, offset in members:
                 of_lane[i] = _of_lane(lanes.tracks[i], offset, cuts, lanes.s, lanes.road)
-    return [(_courses([next(fits) for _ in lanes.tracks], lanes.road, of_lane), of_lane) for lanes, of_lane in zip(roads, elements)]
+    return [(_courses([next(courses) for _ in lanes.tracks], lanes.road, of_lane), of_lane) for lanes, of_lane in zip(roads, elements)]
 
 
-def _ranges_of_axis(source: NoSource, line: tuple[np.ndarray, np.ndarray]) -> list[tuple[float, float, str]]:
-    """The `element_ranges` of one line."""
-    return element_ranges([line])[0]
+def curves_of_lanes(source: NoSource, lines: Sequence[tuple[np.ndarray, np.ndarray, str]]) -> list[CurveFit | list[tuple[float, float, str]]]:
+    """The phase that fits curves to lines, (x, y, kind): what `fit_curves` fits to a "whole" line or to one "element" of an alignment.
 
-
-def curves_of_lanes(source: NoSource, lines: Sequence[tuple[np.ndarray, np.ndarray, bool]]) -> list[CurveFit]:
-    """What `fit_curves` fits to each of some lines, (x, y, whether it is one element of an alignment)."""
-    fits: dict[int, CurveFit] = {}
-    for elements in (False, True):
-        rows = [k for k, line in enumerate(lines) if line[2] == elements]
-        fits.update(zip(rows, fit_curves([lines[k][:2] for k in rows], elements)))
+    Of a line that is to be "divided" into elements these are its `element_ranges`.
+    """
+    fits: dict[int, Any] = {}
+    for kind, fit in (("whole", fit_curves), ("element", partial(fit_curves, elements=True)), ("divided", element_ranges)):
+        rows = [k for k, line in enumerate(lines) if line[2] == kind]
+        fits.update(zip(rows, fit([lines[k][:2] for k in rows])))
     return [fits[k] for k in range(len(lines))]
 
 

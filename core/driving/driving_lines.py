@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_fil
 
 from ..common.progress import Progress
 from ..countries.catalogue import Country, country
+from ..execution.in_step import in_step
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
@@ -73,9 +74,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     roads = lanes_once([LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
     progress.report(0.5)
-    fitted = fitted_lanes(roads, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.7))
-    measured: Sequence[Any] = [[None] * len(road.tracks) for road in roads] if road_points is None else road_heights(
-        road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)], progress.part(0.7, 0.9))
+    works = fitted_lanes(roads), road_heights(road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)])
+    fitted, measured = in_step(works, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.9))
     for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
         part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
         s = road.s

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.arrays import order_by
 from ..common.parallel import check_cancelled
-from ..common.progress import Progress
+from ..execution.in_step import Asked, Work
 from ..execution.phase import Phase
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..survey.store.records import COORDINATE_SCALE
@@ -23,12 +23,15 @@ HEIGHT_WINDOW = 20.0   # derived: m of road points in memory at a time
 HEIGHT_POINTS = 500_000   # derived: road points that a worker process looks at, about: 30 ms of its time
 
 
-def road_heights(road_points: RoadPoints, roads: Sequence[tuple[int, np.ndarray, list[LaneTrack]]],
-                 progress: Progress = Progress()) -> list[list[np.ndarray]]:
-    """Median height of road points within 0.3 m of the places along lanes: (N,) z for each track of each road, NaN where there are fewer than 3.
+def road_heights(road_points: RoadPoints | None, roads: Sequence[tuple[int, np.ndarray, list[LaneTrack]]]) -> Work:
+    """The work that measures heights along lanes: (N,) z for each track of each road, the median of road points within 0.3 m of the places.
+
+    It is NaN where there are fewer than 3; None of each track without road points.
 
     roads : number of each, (K,) m its stations, and its lanes
     """
+    if road_points is None:
+        return [[None] * len(tracks) for _, _, tracks in roads]
     result = [[np.full(len(track), np.nan) for track in tracks] for _, _, tracks in roads]
     size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
     windows, places, points = [], [], 0
@@ -43,10 +46,10 @@ def road_heights(road_points: RoadPoints, roads: Sequence[tuple[int, np.ndarray,
                 lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
                 windows.append((road, *sections, s[first:last + 1], lanes))
                 places.append([of_road[k][a - tracks[k].first:b + 1 - tracks[k].first] for k, a, b in inside])
-    together = max(HEIGHT_POINTS * len(windows) // max(points, 1), 1)
     phase = Phase(heights_of_windows, road_points, (), lambda item: road_points.survey.stretch(item[0][0], item[0][3][0], item[0][3][-1]),
-                  state=lambda item: [road_points.store.state((road, first, last + 1)) for road, first, last, *_ in item])
-    for lanes_of_window, heights in zip(places, road_points.executor.run_together(phase, windows, together, progress)):
+                  state=lambda item: [road_points.store.state((road, first, last + 1)) for road, first, last, *_ in item],
+                  listed=max(HEIGHT_POINTS * len(windows) // max(points, 1), 1))
+    for lanes_of_window, heights in zip(places, (yield Asked(phase, windows, 1.0))):
         for place, z in zip(lanes_of_window, heights):
             place[:] = z
     return result

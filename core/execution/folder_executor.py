@@ -19,7 +19,6 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
 from .phase import Executor, Phase, name_of, read_plain, write_plain
-from .tasks import ShippedPhase
 from .weights import EXECUTION
 
 
@@ -91,7 +90,7 @@ class FolderExecutor(Executor):
         shipped = self.folder / f"phase{next(self._numbers)}.plain"
         work = Work(self, phase, shipped)
         try:
-            write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
+            write_plain(shipped, (name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
             parts = [_Part(keep[k] if keep else self.new_file()) for k in range(len(items))]
             work.submit(parts, iter(items), items_together(phase, len(parts), self.workers, self.least_together))
             for part in parts:

@@ -66,6 +66,7 @@ class Phase:
     source : what it reads from, open in this process; its `recipe(folder)` puts into the folder what another process needs, unless it is
         there, and gives the Recipe
     together : so many items, one after the other along the road, are best given to one worker, which keeps what they share
+    listed : the function is given a list of so many items at most, and returns one of their results; 0 where it is given one item
     join : the result of an item from those of the two halves of the range of numbers at its end; None where an item cannot be halved
     state : plain value that changes with what an item reads from the source, by which a later run knows its result again; None where none may
     """
@@ -77,6 +78,7 @@ class Phase:
     join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
     together: int = field(default=1, compare=False)
     state: Callable[[Any], Any] | None = field(default=None, compare=False)
+    listed: int = field(default=0, compare=False)
 
     def result(self, item: Any) -> Any:
         """The result of one item, computed here."""
@@ -117,9 +119,12 @@ class Executor:
         """
         raise NotImplementedError
 
-    def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
-        """Yield the results of items of a phase whose function is given lists of them, `together` at most, and returns lists of results."""
-        size = max(min(together, len(items) // EXECUTION.least_tasks), 1)
+    def run_together(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of all items, of which the function may be given lists."""
+        if not phase.listed:
+            yield from self.run(phase, items, progress)
+            return
+        size = max(min(phase.listed, len(items) // EXECUTION.least_tasks), 1)
         lists = Items(-(-len(items) // size), lambda k: [items[number] for number in range(k * size, min((k + 1) * size, len(items)))])
         for results in self.run(phase, lists, progress):
             yield from results

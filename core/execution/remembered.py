@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,25 +28,19 @@ class RememberedResults(Executor):
             executor.sees, executor.disk_error, executor.forget, executor.release, executor.close)
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        if phase.state is None and not isinstance(phase.source, NoSource):
-            return self.executor.run(phase, items, progress, keep)
-        return self._completed(phase, items, phase.state, lambda executor, missing: executor.run(phase, missing, progress), progress)
+        return self.run_together(replace(phase, listed=0), items, progress)
 
-    def run_together(self, phase: Phase, items: Sequence[Any], together: int, progress: Progress = Progress()) -> Iterator[Any]:
+    def run_together(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
         """As of `Executor`; each item is remembered by itself, whatever others it comes with."""
         if phase.state is None and not isinstance(phase.source, NoSource):
-            return self.executor.run_together(phase, items, together, progress)
-        state = None if phase.state is None else lambda item, of_list=phase.state: of_list([item])
-        return self._completed(phase, items, state, lambda executor, missing: executor.run_together(phase, missing, together, progress), progress)
-
-    def _completed(self, phase, items, state, compute, progress):
-        """Yield the results of all items, of which `compute` has an executor give those that are not remembered."""
-        shared = digest((name_of(phase.function), phase.arguments))
-        names = [digest((shared, item, state and state(item))) for item in items]
+            yield from self.executor.run_together(phase, items, progress)
+            return
+        shared, state = digest((name_of(phase.function), phase.arguments)), phase.state or (lambda item: None)
+        names = [digest((shared, item, state([item] if phase.listed else item))) for item in items]
         missing = {name: k for k, name in enumerate(names) if name not in self._results}
         rows = list(missing.values())
         few = 2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items
-        results = iter(compute(THREADS if few else self.executor, Items(len(rows), lambda k: items[rows[k]])))
+        results = iter((THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress))
         for name in names:
             if name in missing:
                 del missing[name]   # a later item may be the same

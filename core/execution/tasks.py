@@ -12,7 +12,6 @@ import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
@@ -23,19 +22,9 @@ from uuid import uuid4
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.parallel import cancellation_scope, free_memory, is_lack_of_memory, reuse_freed_memory, trim_heap
 from ..common.progress import Progress
-from .phase import Recipe, named, read_plain, write_plain
+from .phase import named, read_plain, write_plain
 from .weights import EXECUTION
 from .work_folder import code_digest
-
-
-@dataclass(frozen=True)
-class ShippedPhase:
-    """A Phase in a file."""
-
-    function: str   # "module:name" within the package
-    source: Recipe
-    arguments: tuple[Any, ...]   # plain values
-
 
 _lock = threading.Lock()
 _open: OrderedDict[str, tuple[Any, Any, tuple[Any, ...]]] = OrderedDict()
@@ -45,7 +34,7 @@ _sources: dict[Any, Any] = {}   # sources that several phases share, by the keys
 def items_done(phase: str, items: str, results: Sequence[str]) -> dict[str, Any]:
     """Compute some items of a phase, one after the other, but for those whose results are there.
 
-    phase : file of a ShippedPhase; the phase is wanted as long as it is there
+    phase : file of the "module:name" of its function, the Recipe of its source and its arguments; the phase is wanted as long as it is there
     items : file of the list of the items
     results : files that their results are written to; unfinished, they lie beside the phase
 
@@ -74,8 +63,8 @@ def items_done(phase: str, items: str, results: Sequence[str]) -> dict[str, Any]
 def _phase(path):
     with _lock:
         if path not in _open:
-            shipped: ShippedPhase = read_plain(Path(path))
-            _open[path] = named(shipped.function), shipped.source.open(_sources), shipped.arguments
+            function, source, arguments = read_plain(Path(path))
+            _open[path] = named(function), source.open(_sources), arguments
             while len(_open) > EXECUTION.open_phases:
                 _open.popitem(last=False)
         return _open[path]

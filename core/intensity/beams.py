@@ -189,20 +189,18 @@ class Beams:
 def _levels(road_points, models, progress):
     """(scanners with beams, ELEVATION_BINS, INTENSITY_LEVELS) how many points have each level at each elevation."""
     counts = np.zeros((len(models), ELEVATION_BINS * INTENSITY_LEVELS), np.int64)
-    for of_stretch in run_stretches(_levels_at_elevations, road_points, (models,), progress):
+    phase = phase_of_stretches(_levels_at_elevations, road_points, (models,))
+    for of_stretch in road_points.executor.run(phase, road_points.stretches(), progress):
         for of_scanner, (place, number) in zip(counts, of_stretch):
             of_scanner[place] += number
     return counts.reshape(len(models), ELEVATION_BINS, INTENSITY_LEVELS)
 
 
-def run_stretches(function: Callable[..., Any], road_points: RoadPoints, arguments: tuple[Any, ...], progress: Progress,
-                  source: RoadPoints | None = None) -> Iterator[Any]:
-    """Yield the results of a phase, a function of stretches of the road points, that reads from these or from a `source`."""
+def phase_of_stretches(function: Callable[..., Any], road_points: RoadPoints, arguments: tuple[Any, ...], source: RoadPoints | None = None) -> Phase:
+    """The phase, a function of stretches of the road points, that reads from these or from a `source`."""
     length = road_points.store.section_length
-    source = road_points if source is None else source
-    phase = Phase(function, source, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length),
-                  state=road_points.store.state)
-    return road_points.executor.run(phase, road_points.stretches(), progress)
+    return Phase(function, road_points if source is None else source, arguments, state=road_points.store.state,
+                 place=lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
 
 
 def _levels_at_elevations(road_points: RoadPoints, stretch: Stretch, models: dict[int, _ElevationModel]) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -11,6 +11,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..execution.in_step import Asked, Work, in_step
 from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
@@ -29,7 +30,7 @@ from .asphalt_model import (
     to_intensity,
     to_level,
 )
-from .beams import Beams, run_stretches
+from .beams import Beams, phase_of_stretches
 from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
@@ -167,7 +168,8 @@ class AsphaltLook:
         # points without a position of the vehicle, and all points
         without_vehicle, highest = np.zeros(2, np.int64), 0
         arguments = list(frame.passes), beams, scanners, step
-        for raw, equal, brightest, lost in run_stretches(levels_of_stretch, road_points, arguments, progress.part(0.4, 1.0)):
+        phase = phase_of_stretches(levels_of_stretch, road_points, arguments)
+        for raw, equal, brightest, lost in road_points.executor.run(phase, road_points.stretches(), progress.part(0.4, 1.0)):
             before.add(raw, step)
             modelled.add(equal, step)
             without_vehicle += lost
@@ -201,10 +203,15 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     _IntensityReport; its `reason` says why nothing was corrected
     """
     asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
+    return in_step([intensity_corrected(road_points, frame, asphalt, progress)], road_points.executor, progress.part(0.5, 1.0))[0]
+
+
+def intensity_corrected(road_points: RoadPoints, frame: RoadFrame, asphalt: AsphaltLook, progress: Progress) -> Work:
+    """The work of the second round of `correct_intensity`; `progress` is told what was done."""
     if asphalt.reason or asphalt.table is None:
         progress.warn(asphalt.reason)
         return road_points, _IntensityReport(reason=asphalt.reason)
-    store, after = _corrected_store(road_points, frame, asphalt, progress.part(0.5, 1.0))
+    store, after = yield from _corrected_store(road_points, frame, asphalt)
     report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
     report.beams = sum(map(len, asphalt.beams.corrections.values())) if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
@@ -224,15 +231,21 @@ def _reason_of_counts(table, lost, points):
     return ""
 
 
-def _corrected_store(road_points, frame, asphalt, progress):
-    """The points with `corrected`, and the counts of their IntensityHistograms."""
+def _corrected_store(road_points, frame, asphalt):
+    """Part of a work: the points with `corrected`, and the counts of their IntensityHistograms."""
     table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
     kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
     store = road_points.store.with_column("corrected", road_points.store.folder)
     arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-    for index, counts in run_stretches(corrected_of_stretch, road_points, arguments, progress, replace(road_points, store=store)):
+
+    def take(result):
+        index, counts = result
         store.adopt(index, store.folder)
         after.add(counts, asphalt.step)
+        return []
+
+    phase = phase_of_stretches(corrected_of_stretch, road_points, arguments, replace(road_points, store=store))
+    yield Asked(phase, road_points.stretches(), 1.0, read=take)
     return store, after.counts
 
 
@@ -322,7 +335,6 @@ def _reason_against(road_points, frame):
 
 
 def _report(before, after, table, points_by_scanner):
-    """_IntensityReport of the counts before and after."""
     rows = table.distance_kind, np.arange(len(table.distance_kind))
     medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)

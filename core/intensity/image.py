@@ -17,6 +17,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
+from ..execution.in_step import Asked, Work, in_step
 from ..execution.phase import THREADS, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
@@ -215,19 +216,27 @@ class _Piece:
     extent: Extent   # Extent of the cells that its points reach
     across: tuple[int, int]   # least and greatest offset of its points, units of 0.1 mm
     step: int   # one of so many points weighs on farther cells
-    limits: tuple[float, float]   # 1 % and 99 % of the intensities about it
+
+    @property
+    def window(self) -> tuple[int, int]:
+        """The road and the number along it of the window whose intensities it is compared with."""
+        return self.road, self.number // IMAGE.pieces_per_window
 
 
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
-                         path: str | PathLike | None = None, before: TiledImage | None = None) -> TiledImage:
+                         path: str | PathLike | None = None, before: TiledImage | None = None,
+                         pieces: Sequence[_Piece] | None = None) -> TiledImage:
     """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
 
     before : image of other points of the survey, whose tiles are taken over where they are the same; it is of no use any more
+    pieces : result of `pieces_of_image`, which an earlier stage looked for; None to look here
     """
-    grid, work = _looked(road_points, settings, progress)
+    if pieces is None:
+        pieces, = in_step([pieces_of_image(road_points, settings)], road_points.executor, progress.part(0.0, 0.3))
+    grid, work = _grid_of(pieces, settings)
     image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
-    image.pieces = {piece: digest((settings, piece, road_points.state(*_span(PIECE_LENGTH, piece.road, piece.number))))
-                    for piece in dict.fromkeys(piece for _, pieces in work for piece in pieces)}   # most touch several tiles
+    states = {window: road_points.state(*_span(IMAGE.ranking_window, *window)) for window in dict.fromkeys(piece.window for piece in pieces)}
+    image.pieces = {piece: digest((settings, piece, states[piece.window])) for piece in pieces}   # most touch several tiles
     image.places = np.array([(piece.road, piece.number, *piece.extent, *piece.across) for piece in image.pieces], np.int64)
     image.states = {tile: digest((grid.shape_of(*tile), [image.pieces[piece] for piece in pieces])) for tile, pieces in work}
     if before is not None:
@@ -289,16 +298,19 @@ def check_fits(width: float, height: float, settings: ImageSettings) -> None:
                                   f"{settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
-def _looked(road_points: RoadPoints, settings: ImageSettings, progress: Progress) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:
-    """The grid of the image, and the pieces of road that touch each tile."""
-    if not len(road_points):
-        raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
+def pieces_of_image(road_points: RoadPoints, settings: ImageSettings) -> Work:
+    """The work that looks what there is to interpolate: the pieces of road with points. Intensities may be corrected later."""
     spans = [(road, *(end / IMAGE.ranking_window for end in road_points.store.span(road))) for road in road_points.roads()]
     windows = [(road, k) for road, start, end in spans for k in range(int(np.floor(start)), int(np.ceil(end)))]
     phase = Phase(windows_of_image, road_points, (settings,), lambda task: road_points.survey.stretch(*_span(IMAGE.ranking_window, *task[0])),
-                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task])
-    looked = road_points.executor.run_together(phase, windows, IMAGE.looked_windows, progress.part(0.0, 0.3))
-    pieces = [piece for window in looked for piece in window]
+                  state=lambda task: [road_points.state(*_span(IMAGE.ranking_window, *window)) for window in task], listed=IMAGE.looked_windows)
+    return (yield Asked(phase, windows, 1.0, list))
+
+
+def _grid_of(pieces: Sequence[_Piece], settings: ImageSettings) -> tuple[_Grid, list[tuple[Tile, list[_Piece]]]]:
+    """The grid of the image, and the pieces of road that touch each tile."""
+    if not pieces:
+        raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     extents = np.array([piece.extent for piece in pieces], np.int64)
     (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
@@ -323,20 +335,28 @@ def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, l
 
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:
     """The phase that looks what there is to interpolate in some windows, each a road and a number along it: the pieces with points of each."""
-    return [_pieces_of_window(road_points, *window, settings) for window in windows]
-
-
-def _pieces_of_window(road_points, road, number, settings):
-    pieces, values = [], []
-    for piece in range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window):
-        points = road_points.window(*_span(PIECE_LENGTH, road, piece))
-        if len(points):
-            step = _sampling_step(points, settings)
+    result = []
+    for road, number in windows:
+        pieces = []
+        for piece, points in _filled_pieces(road_points, road, number):
             d = points.records["d"]
-            pieces.append((road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())), step))
-            values.append(points[::max(step, len(points) // IMAGE.max_ranked_points)].value)
-    limits = tuple(np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()) if values else ()
-    return [_Piece(*piece, limits) for piece in pieces]
+            pieces.append(_Piece(road, piece, _extent_of(points, road_points.origin, settings), (int(d.min()), int(d.max())),
+                                 _sampling_step(points, settings)))
+        result.append(pieces)
+    return result
+
+
+def _limits_of_window(road_points, road, number, settings):
+    """1 % and 99 % of the intensities of a window with points."""
+    values = [points[::max(_sampling_step(points, settings), len(points) // IMAGE.max_ranked_points)].value
+              for _, points in _filled_pieces(road_points, road, number)]
+    return np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()
+
+
+def _filled_pieces(road_points, road, number):
+    """(number, Points) of the pieces of a window that have points."""
+    pieces = range(number * IMAGE.pieces_per_window, (number + 1) * IMAGE.pieces_per_window)
+    return ((piece, points) for piece in pieces if len(points := road_points.window(*_span(PIECE_LENGTH, road, piece))))
 
 
 def _sampling_step(points: Points, settings: ImageSettings) -> int:
@@ -352,17 +372,20 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
 def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[FilledTile | None]:
     """The phase that makes tiles, None where one has no data; a piece that some of them share is interpolated once."""
     sums: dict[_Piece, _WeightedSums] = {}
+    limits: dict[tuple[int, int], list[float]] = {}
     result = []
     for tile, pieces in tiles:
         check_cancelled()
-        sums.update({piece: _sums_of_piece(road_points, piece, settings) for piece in pieces if piece not in sums})
+        for piece in pieces:
+            if piece.window not in limits:
+                limits[piece.window] = _limits_of_window(road_points, *piece.window, settings)
+            if piece not in sums:
+                sums[piece] = _sums_of_piece(road_points, piece, settings, *limits[piece.window])
         result.append(grid.tile(*tile, [sums[piece] for piece in pieces]))
     return result
 
 
-def _sums_of_piece(road_points, piece, settings):
-    low, high = piece.limits
-
+def _sums_of_piece(road_points, piece, settings, low, high):
     def brightness(value):
         share = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), np.float32(0.0), np.float32(1.0))
         return share * np.float32(settings.beta) + np.float32(1.0 - settings.beta)

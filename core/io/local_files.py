@@ -183,11 +183,9 @@ def unfinished_path(path: str | os.PathLike[str], suffix: str) -> Path:
     """
     target = Path(path)
     for left in target.parent.glob(f".{escape(target.name)}.*.unfinished*"):
-        try:
+        with suppress(OSError):   # another run was quicker, or it is held open
             if time.time() - max(file.stat().st_mtime for file in (left, *left.glob("*"))) > IO.abandoned_time:
                 shutil.rmtree(left) if left.is_dir() else left.unlink()
-        except OSError:
-            pass   # another run was quicker, or it is held open
     return target.with_name(f".{target.name}.{uuid4().hex}.unfinished{suffix}")
 
 

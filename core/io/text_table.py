@@ -230,10 +230,8 @@ def _parse(body, delimiter, columns, style=STYLES[0]):
     if not rows:
         return np.empty((0, columns)), dropped, b""
     values = None
-    try:
+    with suppress(ValueError):   # where a field is not a number, fields are parsed one by one
         values = np.loadtxt(io.BytesIO(body), comments=None, ndmin=2, encoding="latin1")
-    except ValueError:
-        pass  # a field is not a number: fields are parsed one by one
     if values is None or values.shape != (rows, columns):
         values = _parse_mixed(body, columns)
     return finite_or_nan(values).reshape(-1, columns), dropped, body
@@ -246,10 +244,9 @@ def finite_or_nan(values: np.ndarray) -> np.ndarray:
 
 def as_number(value: Any) -> float:
     """The number in a field, with a decimal point or comma; NaN where it holds none."""
-    try:
+    with suppress(TypeError, ValueError):
         return float(value.replace(",", ".") if isinstance(value, str) else value)
-    except (TypeError, ValueError):
-        return np.nan
+    return np.nan
 
 
 def _fill_empty(body, mark):
@@ -284,23 +281,19 @@ def _parse_mixed(body, columns):
 
 
 def _number_or_nan(text):
-    try:
+    with suppress(ValueError):
         return float(text)
-    except ValueError:
-        pass
     # exponents of Fortran, and units behind numbers
     number = re.fullmatch(rb"([+-]?[\d.]+)(?:[eEdD]([+-]?\d+))?(?:_?([A-Za-z]{1,3}|\xc2?\xb0))?", text)
     unit = _decoded(number[3]).lower() if number and number[3] else ""
     if number is None or (unit and not re.fullmatch(UNIT_SUFFIX, unit)):
         return np.nan
-    try:
+    with suppress(ValueError):
         return float(number[1] + b"e" + (number[2] or b"0"))
-    except ValueError:
-        return np.nan
+    return np.nan
 
 
 def _decoded(text):
-    try:
+    with suppress(UnicodeDecodeError):
         return text.decode()
-    except UnicodeDecodeError:
-        return text.decode("latin-1")
+    return text.decode("latin-1")

@@ -14,18 +14,18 @@ class KeptRun:
     """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
 
     def __init__(self) -> None:
-        self._wanted, self._in_use = False, threading.Lock()
+        self.wanted, self._in_use = False, threading.Lock()
         # {stage: (digest, result, what frees its disk space, whether the next one is made from it)}
         self._results: dict[str, tuple[str, Any, Callable[[], None], bool]] = {}
         self._renewed: dict[str, tuple[Any, Callable[[], None]]] = {}   # results that the next ones are made from
 
     def begin(self) -> None:
         """Keep runs from now on."""
-        self._wanted = True
+        self.wanted = True
 
     def end(self) -> None:
         """Keep no run any more, and free the disk space of the last one."""
-        self._wanted = False
+        self.wanted = False
         if self.take():
             self.drop_from("")
             self.give_back()
@@ -35,13 +35,9 @@ class KeptRun:
         return self._in_use.acquire(blocking=False)
 
     def give_back(self) -> None:
-        if not self._wanted:
+        if not self.wanted:
             self.drop_from("")
         self._in_use.release()
-
-    @property
-    def wanted(self) -> bool:
-        return self._wanted
 
     def known(self, stage: str, digest: str) -> bool:
         """Whether the result of a stage is here; if another one is, it goes, and so does all that came after it."""

@@ -28,11 +28,12 @@ from ..corrections.lanes import correct_lanes
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
+from ..execution.in_step import in_step
 from ..execution.phase import digest
 from ..execution.remembered import RememberedResults
 from ..execution.work_folder import code_digest
-from ..intensity.correction import AsphaltLook, IntensitySettings, correct_intensity
-from ..intensity.image import ImageSettings, check_fits, make_intensity_image
+from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected
+from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
 from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
@@ -40,7 +41,7 @@ from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
-from ..markings.paint.extract import extract_markings
+from ..markings.paint.extract import extract_markings, scanner_scatter
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
 from ..road.common.curb_points import CurbPoints
@@ -242,19 +243,21 @@ def _span(survey):
 def _paint(result, image_path, settings, stages, executor, asphalt):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
+    looked = {}
     if settings.correct:
-        result.road_points, result.intensity_report = stages.run(
-            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity, asphalt=asphalt, depends=())
+        (result.road_points, result.intensity_report), pieces, scatter = stages.run(
+            "intensity", "Correcting intensity …", _corrected, result.road_points, frame, settings.image, asphalt, depends=settings.image)
+        looked = dict(image=pieces, markings=scatter)
     passing = executor.passing()
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
-                       result.road_points, settings.image, path=image_path, depends=(settings.correct, settings.image),
+                       result.road_points, settings.image, path=image_path, pieces=looked.get("image"), depends=(settings.correct, settings.image),
                        free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path) if image_path else None)
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
-                        result.road_points, image, frame, settings.markings, depends=settings.markings)
+                        result.road_points, image, frame, settings.markings, scatter=looked.get("markings"), depends=settings.markings)
     executor.forget()
     if stages.kept is None:
         image.close()
@@ -293,6 +296,12 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
         result.without_paint = "No paint was found on this road, so there are no marking lines" \
             + (": driving lines lead between its borders." if len(driving) else " and no driving lines.")
         stages.progress.warn(result.without_paint)
+
+
+def _corrected(road_points, frame, settings, asphalt, progress):
+    """What `correct_intensity` gives, and what the stages after it look for in points as they are, in one phase: pieces of image, and scatter."""
+    works = [intensity_corrected(road_points, frame, asphalt, progress), pieces_of_image(road_points, settings), scanner_scatter(road_points)]
+    return in_step(works, road_points.executor, progress)
 
 
 # The stages of the road map, run one after the other: their shares of the progress bar and their run times.

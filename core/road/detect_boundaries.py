@@ -12,9 +12,9 @@ import numpy as np
 from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..execution.phase import THREADS, NoSource, Phase
+from ..execution.in_step import in_step
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.lattice.scan_lattice import find_lattice
+from ..survey.lattice.scan_lattice import lattice_of
 from ..survey.open_survey import Survey
 from .common.curb_limits import CurbSettings
 from .common.curb_points import CurbPoints
@@ -23,7 +23,7 @@ from .common.occlusion import OcclusionGrid
 from .common.side_curbs import Section, curbs_along, grids_beside, steps_of_roads
 from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
-from .edges.fit import EdgeSettings, edges_through, tell_edges
+from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from .profiles.detect import detect_curbs, profiles_of, steps_of_section, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
@@ -85,30 +85,29 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
+    kept_ground, ground = ground, ground or MeasuredGround(survey)
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
-        return _find_curb_points(decimation, settings, progress, ground or MeasuredGround(survey))
-
-
-def _find_curb_points(decimation, settings, progress, ground):
-    """`find_curb_points` with the points of a PointDecimation."""
-    survey = decimation.survey
-    if settings.method == "profiles":
-        return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
-    lattice = find_lattice(survey, settings.planes.rotation_frequency, progress.part(0.0, BOUNDARY.lattice_progress))
-    source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
-                             decimation=decimation if settings.method == "both" else None)
-    searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
-    if settings.method == "both":
-        searches["profiles"] = profiles_of(decimation, settings.curbs)
-    steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
-                                              progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
-    points = curbs_along(source, steps, partial(RoadLook, ground))
-    tell_corners(points["scanlines"], progress)
-    if settings.method == "both":
-        tell_points(points["profiles"], progress)
-    points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs, progress.part(BOUNDARY.returns_progress, 1.0),
-                                                grids_beside(steps["profiles" if settings.method == "both" else "scanlines"]), ground)
-    return points
+        if settings.method == "profiles":
+            return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
+        part = progress.part(0.0, BOUNDARY.lattice_progress)
+        # a later stage looks for edges of the pavement in the profiles of a ground that is kept
+        lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
+                             survey.executor.passing(), part)
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
+                                 decimation=decimation if settings.method == "both" else None)
+        searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
+        if settings.method == "both":
+            searches["profiles"] = profiles_of(decimation, settings.curbs)
+        steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
+                                                  progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
+        points = curbs_along(source, steps, partial(RoadLook, ground))
+        tell_corners(points["scanlines"], progress)
+        if settings.method == "both":
+            tell_points(points["profiles"], progress)
+        beside = grids_beside(steps["profiles" if settings.method == "both" else "scanlines"])
+        points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs,
+                                                    progress.part(BOUNDARY.returns_progress, 1.0), beside, ground)
+        return points
 
 
 def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
@@ -129,27 +128,18 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     survey : Survey, in which edges of the pavement are looked for; None leaves them out
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
-    executor = THREADS if survey is None else survey.executor.passing()
-    boundaries = _drawn(points_by_method, frame, settings, executor, progress if survey is None else progress.part(0.0, BOUNDARY.curb_edges_progress))
+    points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
+    boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress)))
+    if "both" in points_by_method:
+        boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, *(points_by_method[method] for method in METHODS), frame)
+        lengths = boundaries.length_by_method = {method: _measured_length(points_by_method[method]) for method in METHODS}
+        if any(lengths.values()):
+            progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
+                         f"they lie more than 5 cm apart along {boundaries.differences.length.sum():.0f} m.")
     if survey is not None:
         boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress.part(BOUNDARY.curb_edges_progress, 1.0),
                                                ground=ground)
     return boundaries
-
-
-def _drawn(points_by_method, frame, settings, executor, progress):
-    """The edges at curbs alone."""
-    points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
-    edges, = executor.run(Phase(edges_through, NoSource(), (frame, settings), lambda item: "the edges of all roads"), [points])
-    tell_edges(edges, progress)
-    if "both" not in points_by_method:
-        return _RoadBoundaries(points, edges)
-    edges, differences = measure_agreement(edges, *(points_by_method[method] for method in METHODS), frame)
-    lengths = {method: _measured_length(points_by_method[method]) for method in METHODS}
-    if any(lengths.values()):
-        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
-                     f"they lie more than 5 cm apart along {differences.length.sum():.0f} m.")
-    return _RoadBoundaries(points, edges, differences, lengths)
 
 
 # How far apart the curbs of two methods lie, where both see one.

@@ -185,8 +185,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
     _put_in_order(survey, shared, progress.part(parts_at, read_at))
-    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), shared, progress)
-    _see_passes(survey, settings.fit_passes, store, shared, progress)
+    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
+    _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
     _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
     if shared is not None:
@@ -214,6 +214,7 @@ def _survey_of(files, frame, read, settings, crs, progress):
 def _put_in_order(survey, shared, progress):
     if shared is not None:
         shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
         survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
@@ -224,15 +225,15 @@ def _say_brightness(survey, intensity, settings, samples, progress):
         progress.warn(note)
 
 
-def _lay_scanners_and_passes(survey, again, feet, shared, progress):
+def _lay_scanners_and_passes(survey, again, feet, progress):
     """Lay scanners on each other and, where they drive `again`, passes; m that the mounting of scanners leaves open across."""
-    folder, mounted = shared.points if shared else None, 0.0
+    mounted = 0.0
     if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
         _check_clock(survey, progress)
         read_at = READING.read_progress if again else 1.0
-        mounted = lay_scanners(survey, progress.part(read_at, read_at), folder)
+        mounted = lay_scanners(survey, progress.part(read_at, read_at))
     if again:
-        adjust_passes(survey, progress.part(READING.read_progress, 1.0), folder)
+        adjust_passes(survey, progress.part(READING.read_progress, 1.0))
     return mounted
 
 
@@ -297,12 +298,8 @@ def _check_height(height, crs, explained, progress):
     return feet
 
 
-def _see_passes(survey, fit_passes, measured, shared, progress):
-    """Put points that were moved since they were measured in order, and tell where roads and carriageways do not fit each other."""
-    if shared is not None and survey.store is not measured:
-        for file in shared.ordered.iterdir():
-            file.unlink()
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+def _see_passes(survey, fit_passes, progress):
+    """Tell where roads and carriageways do not fit each other."""
     if len(survey.frame.roads) > 1:
         for warning in warnings_of_levels(survey.frame):
             progress.warn(warning)

@@ -89,13 +89,15 @@ class Survey:
         write_plain(folder / SURVEY_FILE, dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED}))
         self.folder = folder
 
-    def put_in_order(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
-        """Put the points in order, in a folder that the executor's workers see, as they see that of the store."""
-        source = _UnorderedPoints(self.store, None if self.store.finish is None else self.finishing, folder)
-        length = self.store.section_length
+    def put_in_order(self, folder: Path | None, executor: Executor = THREADS, progress: Progress = Progress(), moves: Any = None) -> None:
+        """Put the points in order, in a folder that the executor's workers see, as they see that of the store; `moves` : as of _UnorderedPoints."""
+        source = _UnorderedPoints(self.store, None if self.store.finish is None else self.finishing, folder, moves)
+        length, items = self.store.section_length, self.store.stretches(self.store.numbers())
         phase = Phase(_order_sections, source, (), lambda item: self.stretch(item[0], item[1] * length, item[2] * length))
-        parts = list(executor.run(phase, self.store.stretches(self.store.numbers()), progress))
-        self.store.take_over(StoreIndex.join(parts), folder)
+        roads = [None, *(road for road, *_ in items), None]
+        items = [(road, first - source.beyond * (before != road), end + source.beyond * (after != road))
+                 for (road, first, end), before, after in zip(items, roads, roads[2:])]
+        self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), folder)
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -133,23 +135,38 @@ def survey_in_folder(folder: str) -> Survey:
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.
 
 class _UnorderedPoints:
-    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are."""
+    """Points of a store, which workers must see, to be put in order in a folder, finished with `finishing`, None where they are.
 
-    def __init__(self, store: SectionStore, finishing: _Finishing | None, folder: str | Path):
-        self.store, self.finishing, self.folder = store, finishing, Path(folder)
+    moves : `moved` gives Columns of moved points, and `reach` by how many m of station at most; None where points stay
+    beyond : sections into which points may move
+    """
+
+    def __init__(self, store: SectionStore, finishing: _Finishing | None, folder: str | Path | None, moves: Any = None):
+        self.store, self.finishing, self.folder, self.moves = store, finishing, None if folder is None else Path(folder), moves
+        self.beyond = 0 if moves is None else int(np.ceil(moves.reach / store.section_length))
         store.finish = finishing
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
         store = Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.store.folder), **self.store.contents()))
-        return Recipe("core.survey.survey:_UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder)))
+        return Recipe("core.survey.survey:_UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder), moves=self.moves))
+
+    def moved_to(self, stretch: Stretch) -> SectionStore:
+        """A store of the points that may lie in a stretch once they are moved."""
+        (road, first, end), store = stretch, SectionStore(self.store.dtype, self.store.section_length)
+        ends = (np.array([first, end]) * store.section_length + [-self.moves.reach, self.moves.reach]) / COORDINATE_SCALE
+        for section in range(first - self.beyond, end + self.beyond):
+            records = self.store.section(road, section)
+            store.append(road, self.moves.moved(records[slice(*np.searchsorted(records["s"], ends).tolist())]))
+        return store
 
 
 def _order_sections(source: _UnorderedPoints, item: Stretch) -> StoreIndex:
     """The phase: the points of some sections, in order, in a file of the folder."""
     try:
-        with SectionStore(source.store.dtype, source.store.section_length, source.folder).part() as part:
-            return source.store.written_in_order(source.store.in_stretch(item), part)
+        store = source.store if source.moves is None else source.moved_to(item)
+        with SectionStore(store.dtype, store.section_length, source.folder).part() as part:
+            return store.written_in_order(store.in_stretch(item), part)
     finally:
         # they are removed when all is in order, which Windows refuses for files that are open
         close_files()

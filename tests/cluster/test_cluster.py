@@ -19,7 +19,7 @@ from curbed_streets import street, survey_of
 from executed_boundaries import Heard, numbers_of
 from executed_boundaries import boundaries as boundaries_by
 from executed_stages import PHASES as STAGE_PHASES
-from executed_stages import found_by
+from executed_stages import found_by, functions_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
@@ -55,7 +55,7 @@ class AtPhase:
 
     def run(self, phase, items, *others, **named):
         for k, result in enumerate(self.executor.run(phase, items, *others, **named)):
-            if k == 0 and phase.function.__name__ == self.name:
+            if k == 0 and self.name in functions_of(phase, items):
                 self.act()
             yield result
 

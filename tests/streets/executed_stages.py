@@ -1,5 +1,6 @@
 """The stages of a road map, run by any executor on a sample survey in small tasks, and what must be the same to the last bit."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.driving import heights
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.in_step import items_of_phases
 from lanewright.core.execution.work_folder import KeptResults
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
@@ -30,7 +32,14 @@ from lanewright.core.survey.store import section_store
 PHASES = ["ground_of_windows", "surface_points", "levels_of_stretch", "corrected_of_stretch",
           "windows_of_image", "tiles_of_image", "scatter_of_windows", "paint_of_window", "kept_of_windows", "links_of_windows",
           "combs_of_windows", "pieces_of_clusters", "outlines_of_markings", "sections_of_stretch",
-          "estimate_of_road", "heights_of_windows"]
+          "heights_of_windows"]
+
+
+def functions_of(phase, items):
+    """{name of a function: how many of these items are its own}; several phases may be run as one."""
+    if phase.function is not items_of_phases:
+        return {phase.function.__name__: len(items)}
+    return Counter(name.partition(":")[2] for together in items for name, _ in together)
 
 
 def found_by(sample, executor=None, work=None, progress=Progress()):

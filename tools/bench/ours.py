@@ -151,13 +151,15 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
+    from lanewright.core.execution.in_step import in_step
+    from lanewright.core.execution.phase import THREADS
     from lanewright.core.markings.objects.cluster import ClusterSettings
     from lanewright.core.markings.objects.grouping import connected_points
     from lanewright.core.survey.store.road_points import columns_of_roads
 
     points = _paint(size)
     road = points.roads()[0]
-    ((_, labels), *_), seconds = timed(lambda: connected_points(points, ClusterSettings.distance))
+    ((labels, *_),), seconds = timed(lambda: in_step([connected_points(points, ClusterSettings.distance)], THREADS))
     clusters = np.empty(len(labels), np.int64)
     clusters[columns_of_roads(points.store, [road], ("time",))["time"].astype(np.int64)] = labels
     np.save(prepared("clusters_ours.npy", size), clusters)

@@ -87,10 +87,11 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
             piece = candidates.take(part)
             # which rows of a table they are does not matter
             pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, part.stop), first_direction))
-    place, shared = lambda item: "the lanes of a road", (lane_width, weights)
-    chosen = executor.run(Phase(sections_of_stretch, NoSource(), shared, place), pieces, progress.part(0.0, 0.6))
-    items = [(*road, Sections.joined([next(chosen) for _ in of_road])) for road, of_road in zip(roads, stretches)]
-    return executor.run(Phase(estimate_of_road, NoSource(), shared, place), items, progress.part(0.6, 1.0))
+    phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
+    chosen = executor.run(phase, pieces, progress)
+    for road, of_road in zip(roads, stretches):
+        check_cancelled()
+        yield _estimate_of_road(*road, Sections.joined([next(chosen) for _ in of_road]), lane_width, weights)
 
 
 def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> Sections:
@@ -102,9 +103,8 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int]
     return sections
 
 
-def estimate_of_road(source: NoSource, item: tuple[Candidates, Evidence, int, Sections], lane_width: float, weights: EstimateWeights) -> RoadEstimate:
-    """The phase that finds the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
-    candidates, evidence, first_direction, sections = item
+def _estimate_of_road(candidates, evidence, first_direction, sections, lane_width, weights):
+    """The RoadEstimate of the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
     sections = replace(sections, cost=sections.cost.copy())
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said

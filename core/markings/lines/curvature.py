@@ -77,13 +77,10 @@ def _near(points, which):
     """Ascending rows of all points within the kernel of those at the rows `which`, and of some more."""
     column, row = _cells(points[which])
     marked = np.zeros(HASHED_CELLS, bool)
-    for right in (-1, 0, 1):
-        for up in (-1, 0, 1):
-            marked[_cell(column + np.int32(right), row + np.int32(up))] = True
-    rows = [np.empty(0, np.intp)]
-    for first in range(0, len(points), POINTS_LOOKED_AT):
-        rows.append(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT])))))
-    return np.concatenate(rows)
+    steps = np.arange(-1, 2, dtype=np.int32)
+    marked[_cell(column[:, None, None] + steps[:, None], row[:, None, None] + steps)] = True
+    return np.concatenate([np.empty(0, np.intp), *(first + np.flatnonzero(marked.take(_cell(*_cells(points[first:first + POINTS_LOOKED_AT]))))
+                                                   for first in range(0, len(points), POINTS_LOOKED_AT))])
 
 
 def _cells(points):

@@ -82,10 +82,10 @@ class _DrawnLine:
 
     wanted: bool
     curve: Curve
-    arc: Sequence[np.ndarray]
-    stations: Sequence[np.ndarray]
-    places: Sequence[np.ndarray]
-    rmse: Sequence[float]
+    arc: list[np.ndarray]
+    stations: list[np.ndarray]
+    places: list[np.ndarray]
+    rmse: list[float]
 
 
 def _lines_drawn(source: NoSource, courses: Sequence[_Course], curve: str, degree: int) -> list[_DrawnLine]:
@@ -118,7 +118,7 @@ def _drawn_line(course: _Course, fit: CurveFit, wanted: bool, u: np.ndarray, hei
     line = _DrawnLine(wanted, fit.curve, [], [], [], [])
     for first, last in course.pieces:
         arc = _led_on(np.array([first, last]), stations, lengths)
-        along = np.linspace(*arc, max(2, int(np.ceil((arc[1] - arc[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1))
+        along = np.linspace(arc[0], arc[1], max(2, int(np.ceil((arc[1] - arc[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1))
         s, residuals = _led_on(along, lengths, stations), fit.residuals[stretch_of(measured, first, last)]
         line.arc.append(arc)
         line.stations.append(s)
@@ -324,8 +324,9 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     edge_sections = EdgeSections.of(edges)
     executor = THREADS if road_points is None else road_points.executor
     selected, courses, dropped = _traced(clustered_points, markings, frame, edge_sections, settings, executor, progress.part(0.0, LINES_SHARE / 2))
-    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines")
-    fitted = list(executor.run_together(phase, courses, STRANDS.fitted_together, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines",
+                  listed=STRANDS.fitted_together)
+    fitted = list(executor.run_together(phase, courses, progress.part(LINES_SHARE / 2, LINES_SHARE)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
     progress.info(f"Marking lines: {len(fitted)}; {dropped} fragments were left out.")

@@ -181,14 +181,10 @@ class Stretch:
 
 def _painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
-    spans = [span for strand in line.strands for span in _painted(strand)]
-    intervals = [list(spans[0])]
-    for first, last in spans[1:]:
-        if first - intervals[-1][1] < SELECTION.max_worn_hole:
-            intervals[-1][1] = max(intervals[-1][1], last)
-        else:
-            intervals.append([first, last])
-    return np.array(intervals)
+    first, last = np.array([span for strand in line.strands for span in _painted(strand)]).T
+    last = np.maximum.accumulate(last)
+    holes = first[1:] - last[:-1] >= SELECTION.max_worn_hole
+    return np.column_stack([first[np.r_[True, holes]], last[np.r_[holes, True]]])
 
 
 def _painted(strand):

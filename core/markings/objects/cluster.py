@@ -16,12 +16,13 @@ from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import median
 from ...execution.in_step import Asked, Work, in_step
-from ...execution.phase import THREADS, Executor, Items, NoSource
+from ...execution.phase import THREADS, Executor, Items, NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points
-from ...survey.store.road_points import RoadPoints
+from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..road_grid import CELL_UNITS, occupied, track_reach
 from ..weights import CLASSES, ROWS, SHAPES
 from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, filled, relative_contrast, too_pale
@@ -43,6 +44,8 @@ from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
 from .split_merge import are_compound, join_fragments, parts_of_compound
 
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
+# of a point of paint that clustering looks at
+PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
                      progress: Progress = Progress(), executor: Executor = THREADS) -> tuple[MarkingObjects, RoadPoints]:
     """Group road points on paint into markings with class, size and outline.
 
-    executor : who links points, looks for crossings, divides compound clusters and measures clusters
+    executor : who links points, looks for crossings and divides compound clusters
 
     Returns
         markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has several, with one `cluster` number
@@ -70,15 +73,18 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     roads = marking_points.roads()
     lines = [frame.road(road) for road in roads]
-    connected = connected_points(marking_points, settings.distance, progress.part(0.0, 0.1), executor)
-    counts = [len(records) for records, _ in connected]
-    works = [_apart(*of_road, line, settings) for of_road, line in zip(connected, lines)]
+    executor = marking_points.store.readers(executor)
+    paint = [columns_of_roads(marking_points.store, [road], PAINT_COLUMNS) for road in roads]
+    connected, *striped = in_step([connected_points(marking_points, settings.distance), *map(_striped, paint, lines)], executor,
+                                  progress.part(0.0, 0.4))
+    counts = [len(labels) for labels in connected]
+    works = [_apart(*of_road, settings) for of_road in zip(paint, connected, striped)]
     # the labels of the points of all roads are in memory as long as anybody has them
-    del connected
-    apart = in_step(works, executor, PLACE, progress.part(0.1, 0.7))
+    del connected, striped
+    apart = in_step(works, executor, progress.part(0.4, 0.7))
     blocks = _blocks_of_all([pieces for _, pieces in apart])
     named = in_step([_markings(stripes, pieces, of_road, k, lines, settings, marking_points.has_corrected)
-                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, PLACE, progress.part(0.7, 1.0))
+                     for k, ((stripes, pieces), of_road) in enumerate(zip(apart, blocks))], executor, progress.part(0.7, 1.0))
     rows, polygons = [], []
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
@@ -107,29 +113,35 @@ class _Pieces(NamedTuple):
     shapes: list[Shape]
 
 
-def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSettings) -> Work:
-    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
-
-    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
-    """
+def _striped(records: Columns, road: Road) -> Work:
+    """The work on one road that finds the stripes of its crossings, [Stripe], and (N,) int32 the number of the stripe of each point, else -1."""
     cells, member = occupied(records["x"] // CELL_UNITS, records["y"] // CELL_UNITS)
     station = np.zeros(len(cells))
     station[member] = records["s"] * COORDINATE_SCALE
     places, way = (cells + 0.5) * CELL_UNITS * COORDINATE_SCALE, road.heading(station)
     del cells, station
     spots, windows = spots_by_place(places)
-    crossings = crossings_of(spots, windows, (yield asked(combs_of_windows, partial(_at, (places,)), windows, 0.35)))
+    crossings = crossings_of(spots, windows, (yield asked(combs_of_windows, partial(_at, (places,)), windows, 0.7)))
     del spots, windows
     stripes = stripes_apart(places, way, crossings, (yield asked(
-        _zebra_stripes, partial(_at, (places, way)), [members for members, _ in crossings], 0.45, [comb for _, comb in crossings])))
+        _zebra_stripes, partial(_at, (places, way)), [members for members, _ in crossings], 1.0, [comb for _, comb in crossings])))
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
-    of_point = stripe_of[member]
-    del places, way, member
-    striped, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
+    return stripes, stripe_of[member]
+
+
+def _apart(records: Columns, labels: np.ndarray, striped: tuple[list[Stripe], np.ndarray], settings: ClusterSettings) -> Work:
+    """The work on one road that gives the stripes of its crossings as [_Marking], and its _Pieces.
+
+    Stripes are set apart, compound clusters divided, and what wear has parted is joined.
+
+    labels, striped : as of `connected_points` and `_striped`
+    """
+    stripes, of_point = striped
+    members, rows = list(members_of(of_point)), np.flatnonzero(of_point < 0)
     paint, labels = records.take(rows), labels[rows]
-    split, pieces = yield from _divided(paint, _with_rows_divided(paint, labels))
+    split, pieces, of_stripes = yield from _divided(paint, _with_rows_divided(paint, labels), records, [of_stripe for _, of_stripe in members])
     joins = join_fragments(pieces, settings.classes.max_width)
     order, starts, _ = _by_cluster(split, 1)
     # points of no cluster get labels of their own
@@ -139,37 +151,40 @@ def _apart(records: Columns, labels: np.ndarray, road: Road, settings: ClusterSe
     clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
     count = np.bincount(joins, minlength=1)
     unjoined = {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
-    # clusters that were joined, then stripes
-    measured = [order[first:end] for label, (first, end) in zip(labels.tolist(), bounds) if label not in unjoined]
-    measured += [of_stripe for _, of_stripe in striped]
-    answers = yield asked(pieces_of_clusters, partial(_columns_at, records, MEASURED), measured, 1.0, [False] * len(measured))
-    shapes = iter([shape for _, (shape,) in answers])
-    of_clusters = [unjoined[label] if label in unjoined else next(shapes) for label in labels.tolist()]
-    return _stripe_markings(records, stripes, striped, shapes), _Pieces(records, clusters, order, bounds, of_clusters)
+    columns = _columns_at(records, MEASURED, order)
+    shapes = [unjoined[label] if label in unjoined else measure(*(column[slice(*ends)] for column in columns))
+              for label, ends in zip(labels.tolist(), bounds)]
+    return _stripe_markings(records, stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
 
 
-def _divided(paint, labels):
-    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order."""
+def _divided(paint, labels, records, stripes):
+    """Part of a work: (N,) labels in which parts of compound clusters have labels of their own, and the Shape of each cluster in their order.
+
+    Also the Shape of each of the stripes, rows of the records.
+    """
     order = order_by(labels)
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     columns = tuple(paint[name].take(order) for name in MEASURED)
-    clusters = [np.arange(*ends) for ends in zip(starts, np.append(starts[1:], len(order)))]
-    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 0.9, are_compound(*columns[:2], starts).tolist())
+    compound = [*are_compound(*columns[:2], starts).tolist(), *(False for _ in stripes)]
+    ends = np.r_[starts, len(order) + np.cumsum([0, *map(len, stripes)])]
+    clusters = [np.arange(*pair) for pair in zip(ends, ends[1:])]
+    columns = tuple(map(np.append, columns, _columns_at(records, MEASURED, np.concatenate([np.empty(0, np.intp), *stripes]))))
+    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 1.0, compound)
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     alone, of_parts = [], []
-    for rows, (parts, shapes) in zip(clusters, divided):
+    for rows, (parts, shapes) in zip(clusters[:len(starts)], divided):
         if parts is None:
             alone += shapes
         else:
             labels[order[rows]] = following + parts
             following += len(shapes)
             of_parts += shapes
-    return labels, alone + of_parts
+    return labels, alone + of_parts, [shape for _, (shape,) in divided[len(starts):]]
 
 
 def _stripe_markings(records, stripes, striped, shapes):
     """[_Marking] of stripes of crossings, with points of each and its Shape."""
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)])).load_all()
+    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)]))
     markings, first = [], 0
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
@@ -303,7 +318,6 @@ def _by_cluster(labels, fewest):
 
 
 def _row(marking, number, line, frame):
-    """The fields of one marking."""
     shape = marking.shape
     return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
                 offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,
@@ -328,7 +342,6 @@ def _scanning_distance(records, line, frame):
 
 MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
 DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
-PLACE = "the markings of all roads"   # names the stretch of road in messages
 TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
 
 
@@ -398,7 +411,8 @@ def asked(function: Callable[..., Any], columns: Callable[[np.ndarray], tuple[An
         a, b = cuts[k:k + 2]
         return *columns(together[bounds[a]:bounds[b]]), bounds[a:b + 1] - bounds[a], *([] if looks is None else [list(looks[a:b])])
 
-    return Asked(function, Items(len(cuts) - 1, item), until, arguments, read)
+    phase = Phase(function, NoSource(), arguments, lambda item: "the markings of all roads", together=EXECUTION.items_per_task)
+    return Asked(phase, Items(len(cuts) - 1, item), until, read=read)
 
 
 def _lasting_cuts(bounds, points):

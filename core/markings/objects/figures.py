@@ -16,7 +16,8 @@ import numpy as np
 from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.in_step import Asked, Work
-from ...execution.phase import NoSource
+from ...execution.phase import NoSource, Phase
+from ...execution.weights import EXECUTION
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
 from ..weights import FIGURES
@@ -45,10 +46,11 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
     groups = list(_candidates(shapes, kinds, parts))
+    phase = Phase(figure_of_cells, NoSource(), (), lambda item: "the figures of all roads", together=EXECUTION.items_per_task)
     for first in range(0, len(groups), GROUPS_AT_ONCE):
         batch = groups[first:first + GROUPS_AT_ONCE]
         cells = [cells_of(members) for group in batch for members in group]
-        kind_of_group = iter((yield Asked(figure_of_cells, cells, 0.5 * (first + len(batch)) / len(groups), read=lambda kind: [kind])))
+        kind_of_group = iter((yield Asked(phase, cells, 0.5 * (first + len(batch)) / len(groups))))
         for group in batch:
             used: set[int] = set()
             for members, kind in [(members, next(kind_of_group)) for members in group]:

@@ -9,11 +9,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.arrays import linked_groups
-from ...common.progress import Progress
-from ...execution.phase import THREADS, Executor, Phase
+from ...execution.in_step import Asked, Work
+from ...execution.phase import Phase
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE
-from ...survey.store.road_points import RoadPoints, columns_of_roads
+from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..road_grid import CELL_UNITS, components, occupied, track_reach
 from ..weights import GROUPS
@@ -21,32 +21,23 @@ from ..weights import GROUPS
 LINKING_WINDOW_CELLS = 1250   # derived: cells of 4 cm: 50 m of station are linked at a time
 LINKING_COLUMNS = ("s", "d", "spacing", "half_width")   # of a point, that linking looks at
 LINKED_POINTS = 50_000   # derived: of paint, that are linked together at most, on average: about 50 ms
-# of a point of paint that clustering looks at
-PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number", "half_width", "covered", "spacing")
 
 
-def connected_points(marking_points: RoadPoints, distance: float, progress: Progress = Progress(),
-                     executor: Executor = THREADS) -> list[tuple[Columns, np.ndarray]]:
-    """Connected components of the points of each road.
+def connected_points(marking_points: RoadPoints, distance: float) -> Work:
+    """The work that links points of paint: (N,) int32 component of the points of each road, by station; its numbering follows station.
 
     Points of one 4 cm cell are one member, at their mean place: points of dense paint would otherwise have hundreds of neighbours each. Cells are
     fixed in station, and windows are joined through the cells they share, so neither window nor section length shows in the result.
 
     distance : m, by which points of one marking are joined
-    executor : who links the points of windows
-
-    Returns of each road
-        records : Columns PAINT_COLUMNS of the N points of the road, by station, which are read when they are asked for and not kept
-        labels : (N,) int32 component of each; its numbering follows station
     """
-    store, length, beyond = marking_points.store, LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
-    phase = Phase(links_of_windows, store, (distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {item[0]}",
+    length, beyond = LINKING_WINDOW_CELLS * CELL_UNITS * COORDINATE_SCALE, 1.0 + distance * GROUPS.reach_along_factor
+    phase = Phase(links_of_windows, marking_points.store, (distance, LINKING_WINDOW_CELLS), lambda item: f"markings of road {item[0]}",
                   state=lambda item: marking_points.state(item[0], item[1] * length - beyond, item[2] * length + beyond))
     items = [(road, *windows) for road in marking_points.roads() for windows in _windows_together(marking_points, road)]
     # road by road, window by window, as they come
-    by_road = groupby(zip(items, store.readers(executor).run(phase, items, progress)), lambda linked: linked[0][0])
-    return [(columns_of_roads(store, [road], PAINT_COLUMNS), _joined_labels(window for _, windows in of_road for window in windows))
-            for road, of_road in by_road]
+    by_road = groupby(zip(items, (yield Asked(phase, items, 0.4))), lambda linked: linked[0][0])
+    return [_joined_labels(window for _, windows in of_road for window in windows) for _, of_road in by_road]
 
 
 def _joined_labels(windows):
@@ -92,7 +83,7 @@ def links_of_windows(store: SectionStore, item: tuple[int, int, int], distance: 
         records = records[(column >= first) & (column < end + reach)]
         columns = {name: records[name] for name in LINKING_COLUMNS}
         cells, member, component = _components_of_points(columns, distance)
-        links.append((cells, component, cells[:, 0] >= end, member[columns["s"] // CELL_UNITS < end]))
+        links.append((cells, component, cells[:, 0] >= end, member[columns["s"] // CELL_UNITS < end].astype(np.int32)))
     return links
 
 

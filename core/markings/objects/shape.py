@@ -48,12 +48,10 @@ class Shape:
 
     @property
     def along(self) -> bool:
-        """Whether it runs along the road."""
         return abs(self.direction) <= SHAPES.max_angle_along
 
     @property
     def across(self) -> bool:
-        """Whether it runs across the road."""
         return abs(self.direction) > SHAPES.min_angle_across
 
 

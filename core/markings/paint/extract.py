@@ -11,6 +11,7 @@ import numpy as np
 
 from ...common.arrays import order_by
 from ...common.progress import Progress
+from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import THREADS, Executor, Phase
 from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...intensity.correction import saturation_of
@@ -28,7 +29,8 @@ WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is give
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
-                     progress: Progress = Progress(), mask_path: str | PathLike | None = None) -> RoadPoints:
+                     progress: Progress = Progress(), mask_path: str | PathLike | None = None,
+                     scatter: ScannerScatter | None = None) -> RoadPoints:
     """Road points, corrected or not, that lie on paint.
 
     Multi-thresholds after Guan et al. (2014) and the driving-line thesis (Waterloo, 2017); our own are the local level of asphalt, the treatment of
@@ -36,6 +38,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
 
     image : of the same points, in memory or on disk; a method on points needs it for the mask alone
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
+    scatter : result of `scanner_scatter` for these points, which an earlier stage looked for; None to look here
 
     Raises RoadExtractionError if the mask cannot be written.
     """
@@ -44,7 +47,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
         progress.warn(saturated)
     with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
         if settings.method is None:
-            paint = _extract_from_image(road_points, image, frame, settings, progress, burn)
+            paint = _extract_from_image(road_points, image, frame, settings, progress, burn, scatter)
         else:
             paint = _extract_from_points(road_points, settings.method, progress)
             if burn is not None:
@@ -64,16 +67,16 @@ def _extract_from_points(road_points: RoadPoints, method: PaintMethod, progress:
 
 
 def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
-                        burn: Burn | None) -> RoadPoints:
+                        burn: Burn | None, scatter: ScannerScatter | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     executor: Executor = road_points.executor if isinstance(image, TiledImage) else THREADS
     source = PaintSource(road_points, image, frame, executor.folder)
     paint = replace(RoadPoints.empty_like(road_points), store=source.paint, has_spacing=True)
-    windows = [(road, windows_of(road_points, road)) for road in road_points.roads()]
-    scatter = ScannerScatter.of(road_points, [(road, window) for road, numbers in windows for window in numbers], executor, progress.part(0.0, 0.1))
+    items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
+    if scatter is None:
+        scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    noisy = {road: sorted(scatter.noisy_windows(road)) for road, _ in windows}
-    items = [(road, window) for road, numbers in windows for window in numbers]
+    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
     phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
@@ -103,31 +106,8 @@ class ScannerScatter:
     shares: dict[int, float]
     points: dict[WindowKey, np.ndarray]   # {(road, window): (scanners,) points of each scanner}
 
-    @classmethod
-    def of(cls, road_points: RoadPoints, windows: Sequence[WindowKey], executor: Executor, progress: Progress = Progress()) -> ScannerScatter:
-        """ScannerScatter from the windows, (road, window), of all roads of a survey."""
-        sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
-        roads = {road for road, _ in sampled}
-        sampled |= {key for key in windows if key[0] not in roads}
-        length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
-        phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
-                      state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item])
-
-        def run(items, part):
-            return list(executor.run_together(phase, items, WINDOWS_PER_TASK, part))
-
-        measured = run([(*key, key in sampled) for key in windows], progress)
-        counts = {key: count for key, (count, _) in zip(windows, measured)}
-        squares = [entry for _, entry in measured if entry is not None]
-        shares = _shares(squares)
-        missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
-        missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
-        squares += [entry for _, entry in run(missed, Progress())] if missed else []
-        return cls({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
-
     @property
     def noisy(self) -> list[int]:
-        """Scanners that are noisy, in order."""
         return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
 
     def noisy_windows(self, road: int) -> set[int]:
@@ -150,6 +130,27 @@ class ScannerScatter:
                            "found.")
         return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
                        "averages, as elongated pieces and rows of dashes; other markings are not found.")
+
+
+def scanner_scatter(road_points: RoadPoints) -> Work:
+    """The work that looks at the ScannerScatter of all roads of a survey."""
+    windows = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
+    sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
+    roads = {road for road, _ in sampled}
+    sampled |= {key for key in windows if key[0] not in roads}
+    length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
+    phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
+                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item],
+                  listed=WINDOWS_PER_TASK)
+    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0)
+    counts = {key: count for key, (count, _) in zip(windows, measured)}
+    squares = [entry for _, entry in measured if entry is not None]
+    shares = _shares(squares)
+    missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
+    missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
+    if missed:
+        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
+    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
 
 
 def scatter_of_windows(road_points: RoadPoints,

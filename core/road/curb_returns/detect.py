@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from ...common.progress import Progress
+from ...execution.in_step import Work, in_step
 from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import Road
 from ...survey.weights import FRAME
@@ -26,7 +27,7 @@ from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
+from .classify import classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
@@ -58,23 +59,27 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     seen = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
                          settings, progress.part(0.0, RETURN.led_progress))
-    for i, road in enumerate(roads):
-        part = progress.part(*(RETURN.led_progress + (1.0 - RETURN.led_progress) * k / len(roads) for k in (i, i + 1)))
-        look = None if ground is None else RoadLook(ground, road)
-        main, chain = mains[road]
-        elsewhere = [run for other_road in roads if other_road != road for run in runs[other_road]]
-        of_road = curb_points.road == road
-        curbs = find_curb_returns(decimation, road, main, seen[road], settings, part, elsewhere, look)
-        if not are_replaced(curb_points[of_road & on_islands], curbs):
-            on_islands &= ~of_road
-            main, chain = main_curbs_of(curb_points, survey, road)
-            again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
-            curbs = find_curb_returns(decimation, road, main, again[road], settings, part, elsewhere, look)
+    looks = {road: None if ground is None else RoadLook(ground, road) for road in roads}
+    works = [_returns_of_road(curb_points, on_islands, decimation, road, mains[road], seen[road], settings,
+                              [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
+    for road, (on_island, main, chain, curbs) in zip(roads, in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))):
+        on_islands &= on_island
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
         parts += points + hidden
     progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
     return CurbPoints.join([curb_points[~on_islands], *parts], curb_points.crs)
+
+
+def _returns_of_road(curb_points, on_islands, decimation, road, main_and_chain, seen, settings, elsewhere, look):
+    """The work on one road: which main curbs are islands, the main curb, the number of the next chain and the curbs away from it."""
+    survey, of_road, (main, chain) = decimation.survey, curb_points.road == road, main_and_chain
+    curbs = yield from find_curb_returns(decimation, road, main, seen, settings, elsewhere, look)
+    if not are_replaced(curb_points[of_road & on_islands], curbs):
+        main, chain = main_curbs_of(curb_points, survey, road)
+        again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
+        return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, elsewhere, look))
+    return np.ones(len(of_road), bool), main, chain, curbs
 
 
 def _points_of_road(survey, road, curbs, chain, main, beside, crs):
@@ -141,9 +146,8 @@ def _steps_in_plan(decimation, searches, settings, progress=Progress()):
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],
                       seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings,
-                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (),
-                      look: RoadLook | None = None) -> list[CurbReturn]:
-    """Corners, side streets and islands of one road.
+                      elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (), look: RoadLook | None = None) -> Work:
+    """Part of a work: corners, side streets and islands of one road, a list of CurbReturn.
 
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
@@ -160,8 +164,8 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
               and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings, progress)
-    return with_curbs_beyond(curbs, decimation, road, known_places)
+    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings)
+    return (yield from with_curbs_beyond(curbs, decimation, road, known_places))
 
 
 def _noisy_sections(sections, line, steps, scanner_noise, settings):

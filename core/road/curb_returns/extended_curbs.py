@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...common.arrays import Rows
-from ...common.progress import Progress
 from ..common.corners import RunningSums, SideLines
 from ..common.curb_limits import CurbSettings
 from ..common.decimation import PointDecimation
@@ -221,7 +220,7 @@ LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends
 
 
 def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: PointDecimation, road: int, sections: Sequence[tuple[int, int]],
-                known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings, progress: Progress) -> list[CurbReturn]:
+                known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings) -> list[CurbReturn]:
     """The curbs away from main curbs, and what continues faintly from them and from main curbs.
 
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
@@ -230,7 +229,6 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     limits : side -> SearchLimit
     """
     if not sections:
-        progress.report(1.0)
         return list(curbs)
     line, free = decimation.survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
     lines = [coordinates for _, coordinates in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
@@ -243,7 +241,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     continuations: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
     extended = {id(curb): curb for curb in curbs}
-    for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections], progress))):
+    for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections]))):
         # inside a tight bend a place may have no station
         line_steps = _until_met(line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])], met)
         k, at_head = owner[number], ends.uphill[number] < 0

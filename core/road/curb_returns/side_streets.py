@@ -14,6 +14,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...execution.in_step import Asked, Work
+from ...execution.phase import Phase
 from ...survey.frame.road import NODE_SPACING
 from ...survey.store.records import road_of
 from ..common.decimation import PointDecimation
@@ -44,8 +46,8 @@ class _CurbCourse:
         return np.sqrt(np.einsum("ni,ij,nj->n", powers, self.spread, powers))
 
 
-def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> list[CurbReturn]:
-    """The curbs away from main curbs, those that leave the corridor continued beyond it.
+def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, road: int, known: KnownPlaces) -> Work:
+    """Part of a work: the curbs away from main curbs, those that leave the corridor continued beyond it.
 
     known : places of the main curbs
 
@@ -55,22 +57,19 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     if not any(number < 0 for number in survey.store.numbers()):
         return list(curbs)
     met = known.and_steps([curb.steps for curb in curbs])
-    candidates = [_led_from(curb, at_tail, decimation, road, met) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
-                  for at_tail in (True, False)]
-    return [*curbs, *_distinct([curb for curb in candidates if curb is not None], met)]
+    ends = [(curb, at_tail, _end_of(curb, at_tail, survey, road)) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
+            for at_tail in (True, False)]
+    open_ends = [(end, curb, at_tail) for curb, at_tail, end in ends if end is not None and _leaves(end, survey.frame.roads)
+                 and not met.within(*end.ahead(np.ones(1)), 0.5).any()]
+    phase = Phase(_course_beyond, decimation, (), lambda end: "the curbs of side streets")
+    courses = yield Asked(phase, [end for end, *_ in open_ends], 1.0)
+    line = survey.frame.road(road)
+    return [*curbs, *_distinct([_led(course, *of_end, survey, road, line) for course, of_end in zip(courses, open_ends) if course is not None], met)]
 
 
-def _led_from(curb, at_tail, decimation, road, met):
-    """The curb that continues beyond the corridor from one end of a curb; None where there is none, or it is known."""
-    survey = decimation.survey
-    end = _end_of(curb, at_tail, survey, road)
-    if end is None or not _leaves(end, survey.frame.roads):
-        return None
-    x, y = end.ahead(np.ones(1))
-    if met.within(x, y, 0.5).any():
-        return None
-    course = led_beyond(*_ground(decimation, end), end)
-    return None if course is None else _led(course, end, curb, at_tail, survey, road, survey.frame.road(road))
+def _course_beyond(decimation: PointDecimation, end: CurbEnd) -> _CurbCourse | None:
+    """The phase that follows a curb beyond the corridor from its end: its course, None where it is not seen."""
+    return led_beyond(*_ground(decimation, end), end)
 
 
 def _end_of(curb, at_tail, survey, road):

@@ -12,7 +12,6 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import MAD_TO_SIGMA
-from ...execution.phase import NoSource
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
@@ -61,24 +60,14 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
         pieces += of_road
     pieces += dropped_corners(pieces, frame, lines)
     edges = joined_pieces(pieces, frame, curb_points.crs)
-    tell_edges(edges, progress)
-    progress.report(1.0)
-    return edges
-
-
-def edges_through(source: NoSource, curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings) -> RoadEdges:
-    """The phase that fits the edges of one method: `fit_road_edges`, which says nothing of them."""
-    return fit_road_edges(curb_points, frame, settings, Progress())
-
-
-def tell_edges(edges: RoadEdges, progress: Progress) -> None:
-    """Say how long edges are."""
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):
         progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     else:
         progress.warn("No curb was found along this road, so there are no road edges at curbs. A verge is not a curb; a lower minimum curb "
                       "height finds low curbs, and an assumed road width draws edges without curbs.")
+    progress.report(1.0)
+    return edges
 
 
 def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:

@@ -16,6 +16,7 @@ from scipy.ndimage import median_filter
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
+from ...execution.in_step import in_step
 from ...execution.phase import Phase
 from ...survey.density import counted_cubes, cube_density
 from ...survey.frame.road_frame import RoadFrame
@@ -104,7 +105,7 @@ def carriageways(survey: Survey, edges: RoadEdges | None, settings: SurfaceSetti
         profiled = missing.reshape(-1, SURFACE.window_rows).any(axis=1).tolist()
         beside[road] = windows, profiled, stations, measured
         wanted += [(road, row, want) for row, want in zip(windows, profiled)]
-    ground.measure(wanted, progress.part(0.0, SURFACE.measured_progress))
+    in_step([ground.measured(wanted)], survey.executor.passing(), progress.part(0.0, SURFACE.measured_progress))
     for k, (road, of_road) in enumerate(beside.items(), start=1):
         yield road, _carriageway(survey, road, settings, ground, *of_road)
         progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * k / len(beside))

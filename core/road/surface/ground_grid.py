@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from ...common.arrays import order_by
-from ...common.progress import Progress
+from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
 from ...survey.open_survey import Survey
 from ...survey.store.array_file import ArrayFile
@@ -347,9 +347,9 @@ class MeasuredGround:
 
     def cells(self, road: int) -> GroundCells:
         """The GroundCells of a whole road; those of all roads are measured together."""
-        rows = {number: windows_of(self.survey, number) for number in self.survey.store.roads()}
-        self.measure([(number, row, False) for number, of_road in rows.items() for row in of_road])
-        return self.windows(road, rows[road], [False] * len(rows[road]))[0]
+        in_step([self.measured_all(False)], self.survey.executor.passing())
+        rows = windows_of(self.survey, road)
+        return self.windows(road, rows, [False] * len(rows))[0]
 
     def windows(self, road: int, rows: Sequence[int], profiled: Sequence[bool]) -> tuple[GroundCells, SurfaceProfiles | None]:
         """The ground of consecutive windows of a road.
@@ -361,7 +361,7 @@ class MeasuredGround:
             cells : GroundCells of all windows
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
-        self.measure([(road, row, wanted) for row, wanted in zip(rows, profiled)])
+        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor.passing())
         half = _ground_columns(FRAME.corridor, SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):
@@ -379,21 +379,25 @@ class MeasuredGround:
         return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
                                        *profiles)
 
-    def measure(self, wanted: Sequence[tuple[int, int, bool]], progress: Progress = Progress()) -> None:
-        """Keep what is not known yet of windows of any roads: number of the road, first row, and whether the profiles are wanted."""
+    def measured_all(self, profiled: bool) -> Work:
+        """The work of `measured` on all windows of all roads."""
+        return self.measured([(road, row, profiled) for road in self.survey.store.roads() for row in windows_of(self.survey, road)])
+
+    def measured(self, wanted: Sequence[tuple[int, int, bool]]) -> Work:
+        """The work that keeps what is not known yet of windows of any roads: number of the road, first row, and whether the profiles are wanted."""
         kept_cells, kept_profiles = self._kept
         windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
         windows = [window for window in windows if any(window[2:])]
-        if not windows:
-            return
-        executor = self.survey.executor.passing()
         phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
-            item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length))
+            item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
         self._file = self._file or ArrayFile()
-        for measured, (road, row, *_) in zip(executor.run_together(phase, windows, SURFACE.measured_windows, progress), windows):
-            for kept, values in zip(self._kept, measured):
-                if values is not None:
-                    kept[road, row] = self._file.put([values], values.nbytes)
+        # each goes to the file as it comes
+        places = yield Asked(phase, windows, 1.0, lambda parts: [
+            [None if values is None else self._file.put([values], values.nbytes) for values in parts]])
+        for places_of_window, (road, row, *_) in zip(places, windows):
+            for kept, place in zip(self._kept, places_of_window):
+                if place is not None:
+                    kept[road, row] = place
 
     def _read(self, kind, road, row, out):
         """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""

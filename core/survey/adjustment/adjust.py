@@ -7,10 +7,9 @@ changes along the road and small corrections as prior. Two passes meet in their 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,21 +24,19 @@ from ..frame.road_frame import RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
-from ..store.section_store import SectionStore
 from ..weights import ADJUST, FRAME, REGISTER
-from .register import AXES, PLAN_AXES, WINDOW_LENGTH, MovedPoints, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 
 
-def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
+def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
     """Adjust the passes over every road to each other where they measurably disagree.
 
     Points and tracks are moved in plan and height; the reference lines of the roads stay. Where a drive goes on alone, it is moved on as
     where it left the others, so that it has no step there.
 
     survey : Survey with times; its store and frame are replaced where passes are moved
-    folder : of the moved points; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
     moves: dict[int, tuple[np.ndarray, np.ndarray]] = {}
@@ -59,7 +56,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
             if warning := warning_of_one_drive(road, places_of_one_drive(survey.frame.passes_of(road), compared, corrections)):
                 progress.warn(warning)
         frame = survey.frame
-        replace_points(survey, corrections.of_points, progress.part(0.5, 1.0), folder)
+        replace_points(survey, corrections, progress.part(0.5, 1.0))
         survey.moves = corrections
         survey.frame = replace(frame, passes=[_moved_track(frame, corrections, p) for p in frame.passes])
 
@@ -153,33 +150,35 @@ def _moved_track(frame, moves, p):
     return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)})
 
 
-def replace_points(survey: Any, moves: Callable[[Columns], Iterator[MovedPoints]], progress: Progress = Progress(),
-                   folder: Path | None = None) -> None:
-    """Replace the store of a Survey by one of moved points.
+@dataclass(frozen=True)
+class _Moves:
+    """Moves points of a survey: `of_points` of `moves` gives MovedPoints of records, and `reach` how far in plan, m, at most."""
 
-    moves : gives those of the Columns of a section
-    folder : of the moved points; None for a temporary file
-    """
-    before, frame = survey.store, survey.frame
-    store = SectionStore(before.dtype, before.section_length, folder)
+    frame: RoadFrame
+    moves: Any
 
-    def part(key):
-        records = before.section(*key)
+    @property
+    def reach(self) -> float:
+        """m of station, at most."""
+        return self.moves.reach / FRAME.bend_stretch[0] + COORDINATE_SCALE
+
+    def moved(self, records: Columns) -> Columns:
+        """The records of points where they are moved to."""
         moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
-        for number, rows, metres in moves(records):
+        for number, rows, metres in self.moves.of_points(records):
             s, d = (records[name].take(rows) * COORDINATE_SCALE for name in "sd")
-            for name, change in zip(MOVED_COLUMNS, _changes(frame.road(frame.passes[number].road), s, d, metres)):
+            for name, change in zip(MOVED_COLUMNS, _changes(self.frame.road(self.frame.passes[number].road), s, d, metres)):
                 moved[name][rows] += to_units(change)
-        return store.partition(key[0], records.with_columns(**moved)) if len(records) else None
+        return records.with_columns(**moved)
 
-    try:
-        for points in filter(None, ordered_map(part, [(road, number) for road in before.numbers() for number in before.sections(road)], progress)):
-            store.add(points)
-    except BaseException:
-        store.close()
-        raise
-    before.close()
-    survey.store = store
+
+def replace_points(survey: Any, moves: Any, progress: Progress = Progress()) -> None:
+    """Move the points of a Survey within its store; `moves` : as of `_Moves`."""
+    folder = survey.store.folder
+    before = list(folder.iterdir()) if folder else []
+    survey.put_in_order(folder, survey.executor, progress, _Moves(survey.frame, moves))
+    for file in before:
+        file.unlink()
 
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.

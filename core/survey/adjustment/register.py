@@ -53,6 +53,11 @@ class PassCorrections:
             corrections[:, rows] = [to_units(v) for v in metres]
         return corrections
 
+    @property
+    def reach(self) -> float:
+        """m, how far any point is moved in plan at most."""
+        return max(float(np.hypot(*np.abs(values[:2]).max(axis=1) * COORDINATE_SCALE)) for _, values in self.by_pass.values())
+
     def of_points(self, records: Columns | np.ndarray) -> Iterator[MovedPoints]:
         """Yield the corrections of points (Columns or structured records), pass by pass."""
         numbers = records["pass_number"]

@@ -8,19 +8,21 @@ of one scan plane that is a move that grows evenly from the right to the left. S
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ..frame.road_frame import RoadFrame
+from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE
 from ..weights import ADJUST, REGISTER
 from .adjust import replace_points
-from .register import CHANNELS, WINDOW_LENGTH, best_offsets, correlation_sums, height_offset, points_on_strip, strips_of
+from .register import CHANNELS, WINDOW_LENGTH, MovedPoints, best_offsets, correlation_sums, height_offset, points_on_strip, strips_of
 from .trajectory_fit import LOOK_WINDOWS, MAX_SCANNER_OFFSETS, SCANNER_WINDOWS, SIGNIFICANT
 
 SIDES = "right", "left"
@@ -38,11 +40,10 @@ class _ScannerOffsets:
     far: bool   # whether they lie farther apart than could be measured
 
 
-def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> float:
+def lay_scanners(survey: Any, progress: Progress = Progress()) -> float:
     """Lay the scanners of a survey on each other where they measurably lie apart; each is moved by its share, as nothing shows which is right.
 
     survey : Survey with times; its store is replaced where points are moved, and progress hears a warning
-    folder : of the moved points that are not kept in memory; None for a temporary file
 
     Returns m across, one sigma that stays open: how far the middle of the scanners may be off; 0 where they agree.
     """
@@ -58,7 +59,7 @@ def lay_scanners(survey: Any, progress: Progress = Progress(), folder: Path | No
     for offset in offsets:
         if _apart(offset):
             progress.warn(_said(survey, offset, sigma))
-    replace_points(survey, partial(_moved, survey.frame, moves), progress, folder)
+    replace_points(survey, _ScannerMoves(survey.frame, moves), progress)
     return sigma
 
 
@@ -117,22 +118,38 @@ def _filled(one):
     return np.where(alike, 0.5 * (left + right), [right, left])
 
 
-def _moved(frame, moves, records):
-    """MovedPoints of the scanners of a section."""
-    number, scanners = records["pass_number"], records["scanner"]
-    for p, scanner in itertools.product(np.unique(number).tolist(), moves):
-        rows = np.flatnonzero((number == p) & (scanners == scanner))
-        if not len(rows):
-            continue
-        driven = frame.passes[p]
-        station, x, y = driven.at(records["time"].take(rows), "s", "x", "y")
-        yaw = frame.road(driven.road).heading(station) + (0.0 if driven.direction > 0 else np.pi)
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        left = (records["y"].take(rows) * COORDINATE_SCALE - y) * cos - (records["x"].take(rows) * COORDINATE_SCALE - x) * sin
-        values, positions = moves[scanner]
-        left = np.clip(left, -REGISTER.strip_half_width, REGISTER.strip_half_width)
-        ahead, aside, up = (a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, positions.T))
-        yield p, rows, (ahead * cos - aside * sin, ahead * sin + aside * cos, up)
+@dataclass(frozen=True)
+class _ScannerMoves:
+    """What moves the points of each scanner: {scanner: what `_shares` gives}."""
+
+    frame: RoadFrame
+    by_scanner: dict[int, tuple[np.ndarray, np.ndarray]]
+
+    @property
+    def reach(self) -> float:
+        """m, how far any point is moved in plan at most."""
+        ends = np.array([-1.0, 1.0]) * REGISTER.strip_half_width
+        return max(float(np.hypot(*np.abs([self._at(scanner, ends)[:2]]).max(axis=-1)[0])) for scanner in self.by_scanner)
+
+    def _at(self, scanner, left):
+        """(N,) m ahead, aside and up of points of a scanner that lie (N,) m left of the track."""
+        values, positions = self.by_scanner[scanner]
+        return [a + (left - first) / (last - first) * (b - a) for (a, b), (first, last) in zip(values.T, positions.T)]
+
+    def of_points(self, records: Columns) -> Iterator[MovedPoints]:
+        """Yield the moves of points, by pass and scanner."""
+        number, scanners = records["pass_number"], records["scanner"]
+        for p, scanner in itertools.product(np.unique(number).tolist(), self.by_scanner):
+            rows = np.flatnonzero((number == p) & (scanners == scanner))
+            if not len(rows):
+                continue
+            driven = self.frame.passes[p]
+            station, x, y = driven.at(records["time"].take(rows), "s", "x", "y")
+            yaw = self.frame.road(driven.road).heading(station) + (0.0 if driven.direction > 0 else np.pi)
+            cos, sin = np.cos(yaw), np.sin(yaw)
+            left = (records["y"].take(rows) * COORDINATE_SCALE - y) * cos - (records["x"].take(rows) * COORDINATE_SCALE - x) * sin
+            ahead, aside, up = self._at(scanner, np.clip(left, -REGISTER.strip_half_width, REGISTER.strip_half_width))
+            yield p, rows, (ahead * cos - aside * sin, ahead * sin + aside * cos, up)
 
 
 def _scanner_offsets(survey):

@@ -21,6 +21,7 @@ from scipy.interpolate import CubicSpline
 
 from ...common.arrays import RADIX_BITS
 from ...common.progress import Progress
+from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
 from ..store.records import COORDINATE_SCALE, take_rows
 from ..weights import LATTICE
@@ -49,13 +50,21 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
 
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
     """
+    lattice: ScanLattice
+    lattice, = in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor.passing(), progress)
+    return lattice
+
+
+def lattice_of(survey: Any, rotation_frequency: float, progress: Progress) -> Work:
+    """The work of `find_lattice`; `progress` is told what was found."""
     lattice = ScanLattice()
     if not survey.has_time:
         lattice.notes.append("Without gps_time in the cloud and time in the trajectory scan lines cannot be distinguished; "
                              "scanlines are made of the points near each section plane.")
     roads = survey.store.roads() if survey.has_time else []
+    # the samples of all roads together would take much memory
     for i, road in enumerate(roads):
-        samples = _sample_windows(survey, road)
+        samples = yield from _sample_windows(survey, road, (i + 0.3) / len(roads))
         rotations = {}
         for key, windows in samples.items():
             rotation = _rotation(windows, rotation_frequency)
@@ -63,7 +72,7 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
                 lattice.without[key] = _why_none(windows)
             else:
                 rotations[key] = rotation
-        phases = _mirror_phases(survey, road, rotations, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
+        phases = yield from _mirror_phases(survey, road, rotations, samples, (i + 1) / len(roads))
         lattice.mirror_phases.update(phases)
         lattice.without.update({key: NO_TURNING for key in rotations if key not in phases})
     _report_lattice(lattice, progress)
@@ -125,8 +134,8 @@ def _phasors(survey, number, records):
     return time, (above + 1j * across) / np.where(size > 0, size, 1.0)
 
 
-def _sample_windows(survey, road):
-    """{(pass number, scanner): list of _RotationWindow} at places spread along each pass."""
+def _sample_windows(survey, road, until):
+    """Part of a work: {(pass number, scanner): list of _RotationWindow} at places spread along each pass."""
     places = []
     for p in survey.frame.passes_of(road):
         first, last = p.span
@@ -135,7 +144,7 @@ def _sample_windows(survey, road):
 
     samples: dict[tuple[int, int], list[_RotationWindow]] = {}
     phase = Phase(_windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
-    for windows in survey.executor.passing().run(phase, places):
+    for windows in (yield Asked(phase, places, until)):
         for key, window in windows.items():
             samples.setdefault(key, []).append(window)
     return samples
@@ -226,8 +235,8 @@ def _why_none(windows):
     return TOO_THIN if step >= LATTICE.max_point_step else NO_TURNING
 
 
-def _mirror_phases(survey, road, rotations, samples, progress):
-    """The mirror phases of the scanners whose frequency is known, from the points of a whole road."""
+def _mirror_phases(survey, road, rotations, samples, until):
+    """Part of a work: the mirror phases of the scanners whose frequency is known, from the points of a whole road."""
     if not rotations:
         return {}
     bins = _bins_of(survey, rotations)
@@ -238,8 +247,8 @@ def _mirror_phases(survey, road, rotations, samples, progress):
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
     phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
-        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch))
-    for gathered in survey.executor.passing().run_together(phase, list(stretches), LATTICE.stretches_together, progress):
+        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch), listed=LATTICE.stretches_together)
+    for gathered in (yield Asked(phase, stretches, until)):
         for key, sums in gathered:
             bins[key].add(*sums)
     phases = {}

@@ -156,14 +156,6 @@ class Columns:
             self._arrays[name] = np.array(self[name])
         self._arrays[name][:] = values
 
-    def load_all(self) -> Columns:
-        """These columns, all of them read into memory and their sources released."""
-        for name in self.names:
-            self[name]
-        # There are arrays for every name now, so nothing is ever loaded again.
-        self._load = self._load_rows = self._source = self._parts = self._ends = None
-        return self
-
     def unread(self) -> Columns:
         """Rows of other Columns anew, none of whose columns is in memory: what is read of them goes with them. Others as they are."""
         if self._source is None or self._read_only:
@@ -176,10 +168,6 @@ class Columns:
         for array in self._arrays.values():
             array.flags.writeable = False
         return self
-
-    def copy(self) -> Columns:
-        """A writable copy of all columns."""
-        return Columns({name: self[name].copy() for name in self.names}, self.dtype, self._length)
 
     def with_columns(self, **columns: np.ndarray) -> Columns:
         """The same rows with further columns, each (N,); a column of the same name is replaced."""

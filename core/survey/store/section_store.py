@@ -338,7 +338,7 @@ class SectionStore:
         for road, section, number, place, rows, first, count, in_order in index.parts.tolist():
             self._add_part((road, section), _Part(files[number], place, rows, first, count), bool(in_order))
 
-    def take_over(self, index: StoreIndex, folder: Path) -> None:
+    def take_over(self, index: StoreIndex, folder: Path | None) -> None:
         """Keep the points that others wrote in order to files of a folder, from now on, instead of those that are here."""
         count = self._count
         self._release()

@@ -53,10 +53,10 @@ def test_splines_and_profiles_do_not_depend_on_what_is_fitted_beside_them():
 def test_a_curve_is_the_same_to_the_last_digit_whoever_fits_it():
     """A worker process has one thread for sums over many places, this process one for each core."""
     ellipse = (np.stack([90.0 * np.cos(t), 40.0 * np.sin(t)]) for t in [np.linspace(0.0, 3.0, 900)])
-    lines = [(*line, elements) for line in [*map(painted, LONG), *ellipse] for elements in (False, True)]
+    lines = [(*line, kind) for line in [*map(painted, LONG), *ellipse] for kind in ("whole", "element")]
     with closing(WorkerProcesses(find_interpreter(), 1)) as worker:
-        phase = Phase(curves_of_lanes, NoSource())
-        for fit, here in zip(worker.run_together(phase, lines, 1), curves_of_lanes(NoSource(), lines)):
+        phase = Phase(curves_of_lanes, NoSource(), listed=1)
+        for fit, here in zip(worker.run_together(phase, lines), curves_of_lanes(NoSource(), lines)):
             assert fit.curve.params() == here.curve.params() and fit.residuals.tobytes() == here.residuals.tobytes()
 
 

@@ -7,6 +7,7 @@ from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES,
 from lanewright.core.driving.driving_lines import DrivingSettings
 from lanewright.core.driving.heights import road_heights
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
+from lanewright.core.execution.in_step import in_step
 from lanewright.core.execution.phase import Threads
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -329,7 +330,7 @@ def test_lanes_of_two_roads_get_their_own_heights_in_one_phase(monkeypatch):
     s, count = np.arange(20.0, 100.0, 0.5), 160
     track = LaneTrack(0, np.full(count, -1.75), np.full(count, 3.5), np.full(count, MEASURED), np.zeros(count, bool),
                       *[np.full(count, -1)] * 4, *[np.ones(count)] * 3, 1)
-    (low,), (high,) = road_heights(points, [(0, s, [track]), (1, s, [track])])
+    ((low,), (high,)), = in_step([road_heights(points, [(0, s, [track]), (1, s, [track])])], Threads(1))
     np.testing.assert_allclose(high - low, 1.0, atol=1e-4)
     assert phases == ["heights_of_windows"]
 

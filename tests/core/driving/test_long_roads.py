@@ -9,6 +9,7 @@ from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_
 from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
 from lanewright.core.driving.lanes import laid_out
+from lanewright.core.execution.in_step import in_step
 from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
@@ -100,8 +101,8 @@ def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
     for end in (1090.0, 1140.0):
         estimate, = estimates_of_roads([road(end)], 3.5, EstimateWeights(), executor)
         assert np.isfinite(estimate.total)
-    # all stretches and the road; what is missing later is few, and made by threads of the caller
-    assert counts == [10, 1, 1]
+    # all stretches; what is missing later is few, and made by threads of the caller
+    assert counts == [10]
 
 
 def test_tables_hold_the_stations_at_which_a_line_is():
@@ -121,7 +122,7 @@ def test_lanes_are_compared_with_those_beside_them():
     sections = sections_of_lines(lines)[0]
     work = dict(
         joined=lambda tracks: connect(tracks, 20.0), tapers=laid_out,
-        curves=lambda tracks: fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])], Threads(1)))
+        curves=lambda tracks: in_step([fitted_lanes([LanesOfRoad(tracks, sections.s, frame.roads[0])])], Threads(1)))
     for name, function in work.items():
         few, many = (calls(lambda tracks=lanes_of(blocks): function(tracks)) for blocks in (FEW // 2, MANY // 2))
         assert many < 1.2 * MANY / FEW * few, name

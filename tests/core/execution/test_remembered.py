@@ -48,10 +48,10 @@ def test_the_next_runs_compute_what_is_new_in_them():
 
 
 def test_items_that_come_together_are_remembered_one_by_one_so_that_a_new_one_before_them_changes_nothing():
-    asked, phase = Asked(), Phase(doubled_together, NoSource(), (OutlierSettings(),))
+    asked, phase = Asked(), Phase(doubled_together, NoSource(), (OutlierSettings(),), listed=2)
     remembered = RememberedResults(asked)
-    first = list(remembered.run_together(phase, range(32), 2))
-    assert list(remembered.run_together(phase, [100, *range(32)], 2)) == [200, *first]
+    first = list(remembered.run_together(phase, range(32)))
+    assert list(remembered.run_together(phase, [100, *range(32)])) == [200, *first]
     assert len(asked.items) == 1, "the new one alone is few, which threads of the program compute"
 
 

@@ -5,6 +5,7 @@ import gc
 import numpy as np
 import pytest
 import shapely
+from executed_stages import functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines", "lanes", "curve_elements")
 READING = ("open_survey", "find_curb_points", "draw_boundaries")
-SURFACE = (*READING, "extract_road_surface", "correct_intensity", "make_intensity_image", "extract_markings", "remove_outliers", "cluster_markings")
+SURFACE = (*READING, "extract_road_surface", "intensity_corrected", "make_intensity_image", "extract_markings", "remove_outliers", "cluster_markings")
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +100,8 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
     asked, run, settings = {}, Threads.run, RoadMapSettings(survey=SurveySettings(section_length=1.0))
 
     def noting(self, phase, items, *others):
-        asked.setdefault(phase.function.__name__, []).append(len(items))
+        for name, count in functions_of(phase, items).items():
+            asked.setdefault(name, []).append(count)
         return run(self, phase, items, *others)
 
     _, road_map = made(street, tmp_path, kept, settings=settings)

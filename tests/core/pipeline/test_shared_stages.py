@@ -4,7 +4,7 @@ import threading
 import time
 
 import pytest
-from executed_stages import PHASES, found_by
+from executed_stages import PHASES, found_by, functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution.processes import WorkerProcesses
@@ -30,11 +30,12 @@ class Noting(WorkerProcesses):
         self.tasks, self.killed_in = {}, set(killed_in)
 
     def run(self, phase, items, *others):
-        items, name = list(items), phase.function.__name__
-        self.tasks[name] = max(len(items), self.tasks.get(name, 0))
+        items = list(items)
+        names = set(functions_of(phase, items))
+        self.tasks.update({name: max(len(items), self.tasks.get(name, 0)) for name in names})
         killer = threading.Thread(target=self.kill_one, daemon=True)
-        if killed := name in self.killed_in:
-            self.killed_in.remove(name)
+        if killed := self.killed_in & names:
+            self.killed_in -= names
             if any(worker.process.poll() is not None for worker in self._all):
                 self.release()   # it had no task when it was killed; no item may lose two workers
             killer.start()

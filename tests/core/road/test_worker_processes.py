@@ -97,7 +97,7 @@ def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey), [(0, 0, True, False)] * 2, 1)])
+            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey, listed=1), [(0, 0, True, False)] * 2)])
             workers.append([worker.process.pid for worker in executor._all])
             executor.forget()
     assert str(found[0]) == str(found[1]) and found[0]

@@ -1,13 +1,15 @@
-"""Crossings, compound clusters, shapes of clusters and figures: worker processes find in small tasks what threads find together, to the last bit."""
+"""Crossings, compound clusters and figures: worker processes find in small tasks what threads find together, to the last bit."""
 
 from contextlib import closing
 
 import numpy as np
 import pytest
 from lanewright.core.countries.painted_symbols import SYMBOLS
+from lanewright.core.driving.alignment import curves_of_lanes
 from lanewright.core.execution.in_step import Asked, in_step
-from lanewright.core.execution.phase import Threads
+from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters
@@ -50,27 +52,27 @@ def asking_all():
     windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
     combs = yield asked(combs_of_windows, lambda rows: (spots[rows],), [rows for rows in windows if len(rows) > 3], 0.2)
     pieces = yield asked(pieces_of_clusters, columns, members, 0.4, [number < 4 for number in range(len(members))])
-    shapes = [shape for _, (shape,) in (yield asked(pieces_of_clusters, columns, members, 0.6, [False] * len(members)))]
     shown = [*map(figure, SYMBOLS), np.argwhere(np.ones((9, 30)))]
-    figures = yield Asked(figure_of_cells, [(cells, np.zeros(len(cells))) for cells in shown], 1.0, read=lambda kind: [kind])
+    compared = Phase(figure_of_cells, NoSource(), (), str)
+    figures = yield Asked(compared, [(cells, np.zeros(len(cells))) for cells in shown], 1.0)
     return ([comb and (comb.middle.tobytes(), comb.heading, comb.pitch, comb.phase, comb.coherence) for comb in combs],
             [(None if parts is None else parts.tobytes(), of_parts) for parts, of_parts in pieces],
-            shapes, [type(value) for shape in shapes for value in vars(shape).values()], figures)
+            [type(value) for _, shapes in pieces for shape in shapes for value in vars(shape).values()], figures)
 
 
 def found_by(executor, works=1):
     """The results of all phases of some works."""
     with closing(executor):
-        return in_step([asking_all() for _ in range(works)], executor, "a street")
+        return in_step([asking_all() for _ in range(works)], executor)
 
 
 @pytest.mark.slow
 def test_worker_processes_find_what_threads_find(monkeypatch):
-    (combs, pieces, shapes, _, figures), = known = found_by(Threads(1))
+    (combs, pieces, _, figures), = known = found_by(Threads(1))
     assert set(figures) == {"bicycle", "bus", ""} and figures[-1] == ""
     assert sum(comb is not None for comb in combs) >= 2 and None in combs
     (parts, of_parts), (whole, alone) = pieces[0], pieces[-1]
-    assert parts is not None and len(of_parts) >= 2 and whole is None and alone == shapes[-1:] and len(shapes) == len(STRIPES) + len(DASHES) + 1
+    assert parts is not None and len(of_parts) >= 2 and whole is None and len(alone) == 1 and len(pieces) == len(STRIPES) + len(DASHES) + 1
     assert found_by(Threads(3)) == known
     monkeypatch.setattr(phases, "TASK_POINTS", 200)
     assert found_by(WorkerProcesses(find_interpreter(), 2)) == known
@@ -107,8 +109,29 @@ def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
             yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))], 0.5)
         return count
 
-    assert in_step([looking(2), looking(0), looking(1)], Noting(1), "a street") == [2, 0, 1]
+    assert in_step([looking(2), looking(0), looking(1)], Noting(1)) == [2, 0, 1]
     assert phases_run == [("combs_of_windows", 2), ("combs_of_windows", 1)]
+
+
+@pytest.mark.parametrize("executor", [Threads(2), RememberedResults(Threads(1)), WorkerProcesses(find_interpreter(), 1)])
+def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, monkeypatch):
+    """One of them is given lists of items, the other one by one; each work gets the answers to what it asked for."""
+    tasks, run = [], type(executor).run
+    monkeypatch.setattr(type(executor), "run", lambda self, *others: tasks.append(1) or run(self, *others))
+    lines = [(np.arange(20.0), slope * np.arange(20.0), "whole") for slope in range(5)]
+    spots = np.unique(STRIPES[0] // 400, axis=0) * 0.04
+
+    def fitting():
+        return (yield Asked(Phase(curves_of_lanes, NoSource(), (), str, listed=2), lines, 1.0))
+
+    def looking():
+        return (yield asked(combs_of_windows, lambda rows: (spots[rows],), [np.arange(len(spots))] * 3, 1.0))
+
+    with closing(executor):
+        fits, combs = in_step([fitting(), looking()], executor)
+    assert len(tasks) == (0 if isinstance(executor, RememberedResults) else 1) and combs == [None] * 3
+    for slope, fit in enumerate(fits):
+        np.testing.assert_allclose(np.tan(fit.curve.heading(0.0)), slope, atol=1e-9)
 
 
 def test_where_there_is_no_paint_there_is_nothing_to_do():
@@ -116,4 +139,4 @@ def test_where_there_is_no_paint_there_is_nothing_to_do():
         combs = yield asked(combs_of_windows, lambda rows: (rows,), [], 0.5)
         return combs + (yield asked(pieces_of_clusters, lambda rows: (rows, rows, rows), [], 1.0, []))
 
-    assert in_step([asking()], Threads(1), "a street") == [[]] and in_step([], Threads(1), "a street") == []
+    assert in_step([asking()], Threads(1)) == [[]] and in_step([], Threads(1)) == []
