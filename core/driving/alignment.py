@@ -295,16 +295,10 @@ def without_short_status(status: np.ndarray) -> np.ndarray:
 def track_pieces(track: LaneTrack, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane, cut where its status changes and where doubt begins or ends; ends touch."""
     kinds = len(LANE_STATUS)
-    pieces = _status_pieces(without_short_status(track.status + kinds * track.in_doubt), track.first, s)
-    return [(code % kinds, start, end) for code, start, end in pieces]
-
-
-def _status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
-    """(status, start station, end station) of the pieces of a lane; ends touch."""
+    status = without_short_status(track.status + kinds * track.in_doubt)
     cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
-    bounds = s[first + cuts[:-1]]
-    ends = np.r_[bounds[1:], s[first + len(status) - 1]]
-    return [(int(status[a]), float(b), float(e)) for a, b, e in zip(cuts[:-1], bounds, ends)]
+    bounds = s[track.first + np.append(cuts[:-1], len(status) - 1)].tolist()
+    return [(int(status[cut]) % kinds, begin, end) for cut, begin, end in zip(cuts[:-1], bounds[:-1], bounds[1:])]
 
 
 def element_of(elements: list[Element], start: float, end: float) -> Element | None:

@@ -90,7 +90,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             sigma = lane_sigma(track, course, road.road, estimated, paint, passes[track.first:track.last + 1], spacing)
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(
                 track, track.direction, course, elements, estimated.lines, z, sigma, country(settings.country))]
-            arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
+            arcs += [dict(arc=arc, complete=element.complete, rmse=element.rmse, station=element.start, end=element.end, road=number, lane=lane)
+                     for element in elements if is_curve(arc := element.arc if track.direction > 0 else element.arc.reversed())]
             part.report(0.9 * lane / len(tracks))
         tracks = [track.without_jumps(s) for track in tracks]
         areas += lane_areas(estimated, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number), road.of_others)
@@ -100,7 +101,9 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     areas += connectors_between_roads(lanes, frame, areas)
     lines = DrivingLines.of_pieces(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
-    return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
+    curves = CurveElements(**CurveElements.gathered(arcs), arc=[row["arc"] for row in arcs],
+                           complete=np.array([row["complete"] for row in arcs], bool), crs=marking_lines.crs, country=settings.country)
+    return lines, curves, make_lanes(areas, marking_lines.crs)
 
 
 def _road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
@@ -164,19 +167,6 @@ def _between(course, start, end, code_first, code_last):
     stations = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
     stations = stations[np.r_[True, np.diff(stations) > 0]]
     return np.interp(stations, s, course.x), np.interp(stations, s, course.y), stations
-
-
-def _lane_curves(way: int, elements: list[Element]) -> Iterator[dict[str, Any]]:
-    """The circular curves of one lane."""
-    for element in elements:
-        arc = element.arc if way > 0 else element.arc.reversed()
-        if is_curve(arc):
-            yield dict(arc=arc, complete=element.complete, rmse=element.rmse, station=element.start, end=element.end)
-
-
-def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> CurveElements:
-    return CurveElements(**CurveElements.gathered(rows), arc=[row["arc"] for row in rows],
-                         complete=np.array([row["complete"] for row in rows], bool), crs=crs, country=country_name)
 
 
 def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:

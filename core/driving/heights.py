@@ -118,14 +118,10 @@ class _Near:
 
     def medians(self, lanes):
         """[((M,) median heights, (M,) number of points)] within reach of each lane: (M,) cells, ascending, and (M,) offsets there."""
-        self._sort()
+        order = order_by(self.offset >> OFFSET_GRAIN_BITS)
+        self.offset, self.cell, self.height = (values.take(order) for values in (self.offset, self.cell, self.height))
+        self.across = self.offset >> OFFSET_GRAIN_BITS
         return [self._medians(*lane) if len(lane[0]) else (np.empty(0), np.empty(0, int)) for lane in lanes]
-
-    def _sort(self):
-        """Sort the points by offset."""
-        across = self.offset >> OFFSET_GRAIN_BITS
-        order = order_by(across)
-        self.across, self.offset, self.cell, self.height = (values.take(order) for values in (across, self.offset, self.cell, self.height))
 
     def _medians(self, cells, d):
         middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHTS.height_reach / COORDINATE_SCALE)

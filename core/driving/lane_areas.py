@@ -88,12 +88,9 @@ def _border(road, curbs, rows, separates, columns):
         return NO_BORDER
     made_of = road.boundaries.made_of[row]
     if road.boundaries.painted[row]:
-        numbers = road.lines.number[row, columns]
-        drawn = road.lines.drawn[row, columns]
-        number = int(np.bincount(numbers[numbers >= 0]).argmax()) if (numbers >= 0).any() else 0
-        pattern = road.lines.names[int(np.bincount(drawn[drawn >= 0]).argmax())] if (drawn >= 0).any() else road.lines.patterns[row]
-        uses = separates[rows == row]
-        return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(uses[uses >= 0]).argmax()) if (uses >= 0).any() else EDGE_LINE), pattern
+        drawn, uses = road.lines.drawn[row, columns], separates[(rows == row) & (separates >= 0)]
+        pattern = road.lines.names[_usual(drawn)] if (drawn >= 0).any() else road.lines.patterns[row]
+        return f"line {_usual(road.lines.number[row, columns])}", KIND_OF_BORDER.get(_usual(uses) if len(uses) else EDGE_LINE), pattern
     if made_of in (CURB, ISLAND) and curbs is not None:
         return f"edge {int(curbs.number.row(row - len(road.lines.d)).max())}", "curb", ""
     if made_of == HATCHING:

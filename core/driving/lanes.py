@@ -101,17 +101,14 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: Road
             count = taken.index(True) if True in taken else len(taken)
             if count > 1:
                 ahead, course = (values[1:count][::step] for values in (ahead, course))
-                more = _inferred(track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1))
+                unknown = np.full(len(course), -1)
+                more = track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1)
+                # nothing painted shows it, so it is as much less sure as a bridged one
+                more = replace(more, status=np.full(len(course), INFERRED), offset=np.zeros(len(course), bool), left=unknown, right=unknown,
+                               probability=TRACKS.bridged_trust * more.probability, confidence=TRACKS.bridged_trust * more.confidence)
                 result[number] = LaneTrack.joined([more, track] if head else [track, more])
         check_cancelled()
     return result
-
-
-def _inferred(track):
-    """A LaneTrack that nothing painted shows, which is as much less sure as a bridged one."""
-    unknown, trust = np.full(len(track), -1), TRACKS.bridged_trust
-    return replace(track, status=np.full(len(track), INFERRED), offset=np.zeros(len(track), bool), left=unknown, right=unknown,
-                   probability=trust * track.probability, confidence=trust * track.confidence)
 
 
 def _driven_on(estimate, s, ahead, d, width, direction):
@@ -257,17 +254,12 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     # a curb that a lane reaches to shows its place too
     room = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
     reaches = not beside_surface_end(*made_of) and np.nanmedian(np.abs(room - width * span.count)) < SAME_LANE
-    return _track_of(span, int(rows.start), d, width, status, beside_one and not reaches)
-
-
-def _track_of(span, first, d, width, status, beside_one):
-    """The LaneTrack of a span at some places, (N,) m; `beside_one` : whether the place comes from one line only."""
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
-    values = (beside_one, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
+    values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
     second = np.full(len(d), None, object)
     second[:] = [span.second] * len(d)
-    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in values), span.direction, second)
+    return LaneTrack(int(rows.start), d, width, status, *(np.full(len(d), value) for value in values), span.direction, second)
 
 
 def _filled(values):

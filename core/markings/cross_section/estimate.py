@@ -113,7 +113,7 @@ def _estimate_of_road(candidates, evidence, first_direction, sections, lane_widt
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
     lined, total, unnamed_total = np.flatnonzero(paint.any(1) | evidence.bare), 0.0, 0.0
     # what named the lines is the same evidence
-    cost = sections.cost - _by_stretch(lambda part: misnamed_costs(candidates.take(part), sections.take(part), weights), candidates)
+    cost = sections.cost - np.concatenate([misnamed_costs(candidates.take(part), sections.take(part), weights) for part in _stretches(candidates)])
     once, second = np.full((2, *cost.shape), np.inf)
     if len(lined):
         hidden = np.r_[0.0, np.cumsum(candidates.length)]
@@ -136,10 +136,6 @@ def _stretches(candidates):
     """Intervals by the stretch of road that they begin in; those of a stretch are looked at together."""
     bounds = [0, *(np.flatnonzero(np.diff(candidates.first // LENGTH_OF_STRETCH)) + 1).tolist(), len(candidates.first)]
     return [slice(first, end) for first, end in zip(bounds, bounds[1:])]
-
-
-def _by_stretch(function, candidates):
-    return np.concatenate([function(part) for part in _stretches(candidates)])
 
 
 def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):

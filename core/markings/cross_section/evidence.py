@@ -193,11 +193,6 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, on_one_of_two, without_paint)
 
 
-def _extents(markings, road, kind):
-    extents = markings.extent[(markings.road == road) & (markings.kind == kind)]
-    return extents[np.isfinite(extents[:, 0])]
-
-
 def _of_interval(candidates, s, arrows):
     """Arrows on the road with the interval in place of the station."""
     if arrows is None:
@@ -210,8 +205,8 @@ def _of_interval(candidates, s, arrows):
 def _stop_lines(candidates, s, markings, road):
     """`Evidence.stops` of the stop lines on a road, for the intervals from which lanes may lead to them."""
     begin, end = s[candidates.first], s[candidates.last]
-    stops = []
-    for first, last, low, high in _extents(markings, road, "stop"):
+    stops, extents = [], markings.extent[(markings.road == road) & (markings.kind == "stop")]
+    for first, last, low, high in extents[np.isfinite(extents[:, 0])]:
         ahead = np.maximum(first - end, 0.0) - np.maximum(begin - last, 0.0)
         stops += [(k, low, high, ahead[k]) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
     return np.array(stops).reshape(-1, 4)

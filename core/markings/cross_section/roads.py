@@ -155,7 +155,11 @@ def _arrows_and_drive(markings, frame, lines, drives, automatic, weights):
 def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, driven, usual_width, weights, taken, bare):
     """Boundaries, Candidates and Evidence of one road; `edges` with and without a curb, `points` of the road and of paint, each may be None."""
     s, likely, (curbs, pavement) = of_road.s, _likely_ends(of_road, usual_width), edges
-    covered, ends = _surface(*points, number, s, likely)
+    road_points, paint = points
+    if road_points is not None:
+        covered, ends = surface_coverage(road_points, number, s)
+    else:   # paint tells how far the surface reaches
+        covered, ends = (None, None) if paint is None else between_ends(surface_coverage(paint, number, s)[1], likely)
     open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
     hatched, borders = (None if markings is None else of_areas(markings, frame, number, s) for of_areas in (hatched_places, borders_of_hatching))
     boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement)
@@ -203,15 +207,6 @@ def _taken_on(taken, number, candidates, s):
             for interval, d in zip(inside.tolist(), np.interp(middle[inside], reading.s, reading.d).tolist()):
                 result.append((interval, d, tuple((d + offset, width, way) for offset, width, way in reading.lanes)))
     return tuple(result)
-
-
-def _surface(road_points, paint, number, s, likely):
-    """What was scanned of the surface and where it ends, as far as any points tell."""
-    if road_points is not None:
-        return surface_coverage(road_points, number, s)
-    if paint is not None:
-        return between_ends(surface_coverage(paint, number, s)[1], likely)
-    return None, None
 
 
 def _likely_ends(lines, width):

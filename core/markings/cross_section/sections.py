@@ -154,13 +154,9 @@ def _piece(s, d, z, kind, pattern, seen, width):
 
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
     """CrossSections of the lines of one road, which go on over short gaps."""
-    grid, leads = joined(_lines_on_grid(pieces))
-    _lead_over(grid, leads)
-    lengthen_dashed(grid)
-    return _sections(grid)
-
-
-def _sections(lines: _GridLines) -> CrossSections:
+    lines, leads = joined(_lines_on_grid(pieces))
+    _lead_over(lines, leads)
+    lengthen_dashed(lines)
     tables = lines.tables()
     return CrossSections(lines.s, tables["d"], tables["z"], tables["seen"], [row.kind for row in lines.rows], [row.pattern for row in lines.rows],
                          tables["drawn"], lines.names, tables["number"], tables["width"])

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import logsumexp, softmax
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
@@ -551,45 +552,36 @@ def _core(values):
     return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
 
 
+def _ways(cost, transition, joined):
+    """(2, I, K) nats of the ways up to each cross-section and with it, and on from it; `joined` makes one of several, given them and an axis."""
+    forward, backward = ways = np.stack([cost, np.zeros(cost.shape)])
+    for i in range(1, len(cost)):
+        forward[i] += joined(forward[i - 1][:, None] + transition[i - 1], 0)
+    for i in range(len(cost) - 1, 0, -1):
+        backward[i - 1] = joined(transition[i - 1] + (cost[i] + backward[i])[None, :], 1)
+    return ways
+
+
 def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
     """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole.
 
     `cost` : (I, K) nats, inf where there is no cross-section; `transition` : (I - 1, K, K) nats.
     """
-    count, kept = cost.shape
-    best, came = cost[0].copy(), np.zeros((count, kept), int)
-    for i in range(1, count):
-        step = best[:, None] + transition[i - 1]
-        came[i] = np.argmin(step, axis=0)
-        best = step[came[i], np.arange(kept)] + cost[i]
-    choice = np.zeros(count, int)
-    choice[-1] = int(np.argmin(best))
-    for i in range(count - 1, 0, -1):
-        choice[i - 1] = came[i, choice[i]]
-    return choice, float(best.min())
+    forward, _ = _ways(cost, transition, np.min)
+    choice = np.full(len(cost), np.argmin(forward[-1]))
+    for i in range(len(cost) - 1, 0, -1):
+        choice[i - 1] = np.argmin(forward[i - 1] + transition[i - 1][:, choice[i]])
+    return choice, float(forward[-1].min())
 
 
 def probabilities(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
     """(I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `best_sequence`."""
-    forward, backward = np.zeros((2, *cost.shape))
-    forward[0] = -cost[0]
-    for i in range(1, len(cost)):
-        forward[i] = _log_sum(forward[i - 1][:, None] - transition[i - 1], 0) - cost[i]
-    for i in range(len(cost) - 1, 0, -1):
-        backward[i - 1] = _log_sum(backward[i][None, :] - transition[i - 1] - cost[i][None, :], 1)
-    log = forward + backward
-    posterior = np.exp(log - log.max(axis=1, keepdims=True))
-    return posterior / posterior.sum(axis=1, keepdims=True)
+    return softmax(-_ways(cost, transition, lambda nats, axis: -logsumexp(-nats, axis)).sum(axis=0), axis=1)
 
 
 def best_through(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
     """(I, K) nats of the most probable sequence through each cross-section; parameters as of `best_sequence`."""
-    forward, backward = cost.copy(), np.zeros(cost.shape)
-    for i in range(1, len(cost)):
-        forward[i] += (forward[i - 1][:, None] + transition[i - 1]).min(0)
-    for i in range(len(cost) - 1, 0, -1):
-        backward[i - 1] = (transition[i - 1] + (cost[i] + backward[i])[None, :]).min(1)
-    return forward + backward
+    return _ways(cost, transition, np.min).sum(axis=0)
 
 
 def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, repeats: float) -> np.ndarray:
@@ -603,20 +595,11 @@ def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, re
     apart[np.arange(len(choice)), choice] = 0.0
     # metres for which a sequence has been apart from the best one, up to a cross-section and from it on
     before, after = apart.copy(), apart.copy()
-    forward, backward = cost.copy(), np.zeros(cost.shape)
+    forward, backward = _ways(cost, transition, np.min)
     for i in range(1, len(cost)):
-        step = forward[i - 1][:, None] + transition[i - 1]
-        forward[i] += step.min(0)
-        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][step.argmin(0)], 0.0)
+        came = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
+        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came], 0.0)
     for i in range(len(cost) - 1, 0, -1):
-        step = transition[i - 1] + (cost[i] + backward[i])[None, :]
-        backward[i - 1] = step.min(1)
-        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][step.argmin(1)], 0.0)
+        goes_on = (transition[i - 1] + (cost[i] + backward[i])[None, :]).argmin(1)
+        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][goes_on], 0.0)
     return (forward + backward - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9))
-
-
-def _log_sum(values, axis):
-    highest = values.max(axis=axis, keepdims=True)
-    highest = np.where(np.isfinite(highest), highest, 0.0)
-    with np.errstate(divide="ignore"):
-        return np.squeeze(highest, axis) + np.log(np.exp(values - highest).sum(axis=axis))
