@@ -23,17 +23,16 @@ TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "r
 
 
 class Algorithm:
-    """Base of every algorithm. Subclasses set the texts below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
-    which returns further results (numbers) by output name; their help stands in help.txt.
+    """Base of every algorithm. Subclasses set the names below, add parameters and outputs in `declare()`, and do the work in `work(call, progress)`,
+    which returns further results (numbers) by output name; all that users read of them stands in help.txt.
 
     parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
     numbers : list of NumberOutput
     """
 
-    ID = TITLE = GROUP = SUMMARY = ""
-    TAGS = ()
+    ID = TITLE = GROUP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
-    NUMBERS = ()  # (name, label) of numbers among the results
+    NUMBERS = ()  # names of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     DRAWS = False  # it draws pages by QGIS, which does that in the thread of its window alone
@@ -41,7 +40,7 @@ class Algorithm:
     def __init__(self):
         self.parameters = []
         self.declare()
-        self.numbers = [NumberOutput(name, tr(label)) for name, label in (*self.NUMBERS, (WARNINGS, tr("Warnings")))]
+        self.numbers = [NumberOutput(name, tr(self._words(name)[0])) for name in (*self.NUMBERS, WARNINGS)]
 
     # -- what others ask --------------------------------------------------------------------
 
@@ -53,15 +52,16 @@ class Algorithm:
         return f"{GROUPS.index(self.GROUP) + 1} {tr(self.GROUP)}"
 
     def summary(self):
-        return tr(self.SUMMARY)
+        return tr(help_texts()[self.ID][0])
 
     def help_paragraphs(self):
         """The explanation below the summary."""
-        return [tr(part) for part in help_texts().get(self.ID, ())]
+        return [tr(part) for part in help_texts()[self.ID][2:]]
 
     def tags(self):
         """Search words in the user's language and in English, which the field speaks everywhere."""
-        return list(dict.fromkeys((*(tr(tag) for tag in self.TAGS), *self.TAGS, *TAGS_OF_ALL)))
+        tags = help_texts()[self.ID][1].removeprefix("Tags: ").split(", ")
+        return list(dict.fromkeys((*map(tr, tags), *tags, *TAGS_OF_ALL)))
 
     def parameter(self, name):
         """The ParameterSpec of that name, None where there is none."""
@@ -76,16 +76,24 @@ class Algorithm:
     # -- how subclasses declare -----------------------------------------------------------------
 
     def add(self, spec):
-        """Add a parameter; a table of a module may have been made before the language was known."""
-        self.parameters.append(replace(spec, label=tr(spec.label), help=tr(spec.help) if spec.help else spec.help))
+        """Add a parameter with the label and the help that help.txt has for it; what its help says already comes last."""
+        label, *helps = self._words(spec.name, spec.settings)
+        self.parameters.append(replace(spec, label=tr(label), help=" ".join(filter(None, (*map(tr, helps), spec.help)))))
 
-    def add_input(self, kind, name, label, text, geometry="any", **more):
+    def _words(self, name, settings=""):
+        """The paragraphs of help.txt for a parameter or number: its label, then its help."""
+        texts = help_texts()
+        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
+        return (texts.get(f"{self.ID} {name}") or texts.get(f"{settings.partition(':')[2]} {name}")
+                or [*common, *texts.get(f"{self.ID} + {name}", [])])
+
+    def add_input(self, kind, name, **more):
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""
-        self.add(ParameterSpec(kind, name, label, text, geometry=geometry, **more))
+        self.add(ParameterSpec(kind, name, **more))
 
-    def add_map_layer(self, name, text, optional=False):
+    def add_map_layer(self, name, **more):
         """Add a layer of the road map as an input."""
-        self.add_input("layer", name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, optional=optional)
+        self.add_input("layer", name, geometry=MAP_LAYERS[name].geometry, **more)
 
     def add_survey(self, trajectory_optional=False, without=""):
         """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
@@ -94,19 +102,13 @@ class Algorithm:
         self.add_crs()
 
     def add_point_clouds(self):
-        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds"), tr(
-            "LAS, LAZ or COPC files of one survey, or a folder that holds them, a virtual point cloud (VPC) that names them, or names with wildcards "
-            "(/data/B12/tile_*.laz). Files may overlap and come in any order. Withheld points and noise (classes 7 and 18) are left out."))
+        self.add_input("clouds", "POINT_CLOUDS")
 
     def add_trajectory(self, optional=False, without=""):
-        text = tr("Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or "
-                  "SBET file. Made with Import trajectory it needs no further care.")
-        self.add_input("trajectory", "TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional=optional)
+        self.add_input("trajectory", "TRAJECTORY", help=tr(without) if without else "", optional=optional)
 
     def add_crs(self):
-        self.add_input("crs", "CRS", tr("CRS of the point clouds"),
-                       tr("Only for point clouds that carry no CRS of their own, or contradict themselves; it is written into everything made from "
-                          "them."), optional=True, advanced=True)
+        self.add_input("crs", "CRS", optional=True, advanced=True)
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""
@@ -114,25 +116,24 @@ class Algorithm:
             if (only is None or spec.name in only) and self.parameter(spec.name) is None:
                 self.add(spec if advanced is None else replace(spec, advanced=advanced))
 
-    def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):
+    def add_sink(self, name, fields=(), **more):
         """A vector output; the help lists its fields."""
         listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
-        text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
-        self.add(OutputSpec("layer", name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
+        self.add_output("layer", name, help=tr("Fields: {fields}.").format(fields=listed) if fields else "", schema=tuple(fields), **more)
 
-    def add_map_sink(self, name, text="", **more):
+    def add_map_sink(self, name, **more):
         """Add a layer of the road map as an output."""
-        self.add_sink(name, MAP_LAYERS[name].label, text, MAP_LAYERS[name].geometry, fields=MAP_LAYERS[name].schema, **more)
+        self.add_sink(name, MAP_LAYERS[name].schema, geometry=MAP_LAYERS[name].geometry, **more)
 
-    def add_output(self, kind, name, label, text="", **more):
+    def add_output(self, kind, name, **more):
         """Add a result of another kind; `more` are further attributes of OutputSpec."""
-        self.add(OutputSpec(kind, name, label, text, **more))
+        self.add(OutputSpec(kind, name, **more))
 
-    def add_report(self, **more):
-        self.add_output("report", "REPORT", tr("Report"), tr("A page with the numbers of every step and a picture."), **{"optional": True, **more})
+    def add_report(self, optional=True):
+        self.add_output("report", "REPORT", optional=optional)
 
 
-# Typed parameters and outputs of the algorithms: name, label and help in one place, for every program that runs them.
+# Typed parameters and outputs of the algorithms, for every program that runs them. A label ends with the unit, if there is one.
 
 def settings_class(path):
     """`core.road.profiles.detect:CurbSettings` -> the class; None where a package it needs is missing."""
@@ -154,7 +155,7 @@ class ParameterSpec:
 
     kind: str
     name: str
-    label: str   # ends with the unit, if there is one
+    label: str = ""
     help: str = ""
     optional: bool = False
     advanced: bool = False   # a dialog shows it folded away
@@ -164,6 +165,7 @@ class ParameterSpec:
     of: str = ""   # the input whose rows an expression is about, or whose schema is asked for
     file_filter: str = ""   # of a file, as file dialogs take it
 
+    settings = ""
     is_output = False
 
 
@@ -180,7 +182,7 @@ class OutputSpec(ParameterSpec):
 
 @dataclass(frozen=True)
 class SettingSpec:
-    """One field of a core Settings class as an input: the default and the limits are the core's, the words are ours.
+    """One field of a core Settings class as an input: the default and the limits are the core's.
 
     `choices` makes it a list of words. Where a number is a multiple of the core's, its maximum is so many `times` the core's.
     """
@@ -188,8 +190,8 @@ class SettingSpec:
     name: str
     settings: str
     field: str
-    label: str
-    help: str
+    label: str = ""
+    help: str = ""
     choices: tuple = ()
     times: float = 1.0
     advanced: bool = False
@@ -221,16 +223,15 @@ class SettingSpec:
         return allowed.lowest, allowed.maximum * self.times
 
 
-def settings_of(table, settings, names, **further):
-    """The SettingSpecs of a core Settings class, with the labels and helps that help.txt has for them under the name of the table.
+def settings_of(settings, names, **further):
+    """The SettingSpecs of a core Settings class, `module:class`; label and help of each stand in help.txt.
 
     names : of the parameters, with spaces between them, in the order of the dialog, which folds those with a star behind them away; a parameter
         is the field of its name in small letters
     further : name to a dict of other attributes of its SettingSpec
     """
-    return tuple(SettingSpec(**{
-        "name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **dict(zip(("label", "help"), map(
-            tr, help_texts()[f"{table} {name}"]))), **further.get(name, {})}) for name, star in re.findall(r"(\w+)(\*?)", names))
+    return tuple(SettingSpec(**{"name": name, "settings": settings, "field": name.lower(), "advanced": star == "*", **further.get(name, {})})
+                 for name, star in re.findall(r"(\w+)(\*?)", names))
 
 
 NumberOutput = namedtuple("NumberOutput", "name label")   # a number among the results

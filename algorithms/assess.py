@@ -14,22 +14,18 @@ NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a ref
 
 
 def add_excluded(algorithm):
-    algorithm.add_input("expression", "EXCLUDED", tr("Rows of the reference that are not judged"),
-                        tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the "
-                           "rows whose field edge or kind says dropped or none."), optional=True, advanced=True, default="", of="REFERENCE")
+    algorithm.add_input("expression", "EXCLUDED", optional=True, advanced=True, default="", of="REFERENCE")
 
 
 def add_area(algorithm):
-    algorithm.add_input("layer", "AREA", tr("Area"),
-                        tr("Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false."),
-                        "PolygonZ", optional=True)
+    algorithm.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
 
 
-def add_tolerances(algorithm, settings, label, text):
+def add_tolerances(algorithm, settings):
     """The list of tolerances as text: a model can hand it on, and any number of them will do. `settings` names the class, as in SettingSpec."""
     owner = settings_class(settings)
     if owner is not None:
-        algorithm.add_input("text", "TOLERANCES", label, text, default=", ".join(f"{number:g}" for number in owner().tolerances))
+        algorithm.add_input("text", "TOLERANCES", default=", ".join(f"{number:g}" for number in owner().tolerances))
 
 
 def tolerances(call, name="TOLERANCES"):
@@ -147,41 +143,25 @@ def shares_of(numbers, names):
 BOUNDARY = "products.assess.lines:BoundaryAccuracySettings"
 
 EDGES = ("automatic", "all", "curbs")
-BOUNDARY_SETTINGS = settings_of("assess.BOUNDARY_SETTINGS", BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
+BOUNDARY_SETTINGS = settings_of(BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
 
 
 class AssessBoundaries(Algorithm):
     ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
-    SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
-    TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
-    NUMBERS = (
-        ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
-        ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
-        ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
-        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
-        ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
-        *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
-          for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
-    )
+    NUMBERS = ("PRECISION RECALL F1 IOU CORRECT MISSED FALSE EXCLUDED_INTERVALS MEAN RMSE P95 MAXIMUM HEIGHT_MEAN HEIGHT_RMSE HEIGHT_P95 "
+               "HEIGHT_MAXIMUM PRECISION_LEFT RECALL_LEFT F1_LEFT PRECISION_RIGHT RECALL_RIGHT F1_RIGHT").split()
 
     def declare(self):
-        self.add_input("layer", "INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
-        self.add_input("layer", "REFERENCE", tr("Reference boundaries"), tr(
-            "Lines that are known to be right, one on each side of the road, such as the feet of the curbs."), "LineStringZ")
+        self.add_input("layer", "INPUT", geometry="LineStringZ")
+        self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, BOUNDARY, tr("Tolerances (m)"), tr(
-            "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
+        add_tolerances(self, BOUNDARY)
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_input("choice", "EDGES", tr("Edges to judge"),
-                       tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever "
-                          "both layers hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it "
-                          "holds curbs alone: such a reference cannot tell whether they are right."), default=EDGES[0], choices=EDGES)
+        self.add_input("choice", "EDGES", default=EDGES[0], choices=EDGES)
         add_excluded(self)
         add_area(self)
-        self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
-                      geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ")
         self.add_report()
 
     def work(self, call, progress):
@@ -238,44 +218,27 @@ def _errors(errors, before=""):
 
 MARKINGS = "products.assess.markings:MarkingAccuracySettings"
 
-MARKING_SETTINGS = settings_of("assess.MARKING_SETTINGS", MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
+MARKING_SETTINGS = settings_of(MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
 
 
 class AssessMarkings(Algorithm):
     ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
-    SUMMARY = "Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union."
-    TAGS = ("accuracy", "precision", "recall", "iou", "validation", "road marking", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
-    NUMBERS = (
-        *((name, tr("{what} (%)").format(what=what)) for name, what in (
-            ("PRECISION", "Precision of cells, strict"), ("RECALL", "Recall of cells, strict"), ("F1", "F1 of cells, strict"),
-            ("IOU", "Intersection over union of cells, strict"), ("PRECISION_TOLERANT", "Precision of cells with tolerance"),
-            ("RECALL_TOLERANT", "Recall of cells with tolerance"), ("F1_TOLERANT", "F1 of cells with tolerance"),
-            ("OBJECT_PRECISION", "Precision of objects"), ("OBJECT_RECALL", "Recall of objects"), ("OBJECT_F1", "F1 of objects"))),
-        ("HITS", tr("Cells that are right")), ("MISSES", tr("Cells that were missed")), ("FALSE_ALARMS", tr("Cells that are false")),
-    )
+    NUMBERS = ("PRECISION RECALL F1 IOU PRECISION_TOLERANT RECALL_TOLERANT F1_TOLERANT OBJECT_PRECISION OBJECT_RECALL OBJECT_F1 HITS MISSES "
+               "FALSE_ALARMS").split()
     RETIRED = ("FOUND_SHARE",)
 
     def declare(self):
-        self.add_input("painted", "INPUT", tr("Markings to assess"), tr("Polygons, lines with a width, or a mask."))
-        self.add_input("painted", "REFERENCE", tr("Reference markings"),
-                       tr("Polygons, lines or a raster of what is painted; the values of a raster are its classes."))
+        self.add_input("painted", "INPUT")
+        self.add_input("painted", "REFERENCE")
         self.add_trajectory(optional=True)
-        add_tolerances(self, MARKINGS, tr("Tolerances (cells)"), tr(
-            "Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict."))
+        add_tolerances(self, MARKINGS)
         self.add_settings(MARKING_SETTINGS)
-        self.add_input("text", "CLASS_FIELD", tr("Field with the class"),
-                       tr("Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too."),
-                       optional=True, advanced=True, default="class")
+        self.add_input("text", "CLASS_FIELD", optional=True, advanced=True, default="class")
         add_area(self)
-        self.add_input(
-            "raster", "IMAGE", tr("Image that shows what was scanned"),
-            tr("Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was "
-               "never scanned, but also what the road surface left out: leave it empty to hold that against the result."), optional=True)
-        self.add_sink("OUTPUT", tr("Markings by outcome"), tr("Objects of the reference, correct or missed, and the false ones of the result."),
-                      fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
-        self.add_output("raster", "CELLS", tr("Hits, misses and false alarms"), tr(
-            "1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint."), optional=True, by_default=False)
+        self.add_input("raster", "IMAGE", optional=True)
+        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
+        self.add_output("raster", "CELLS", optional=True, by_default=False)
         self.add_report()
 
     def work(self, call, progress):
@@ -324,37 +287,24 @@ def _marking_numbers(accuracy):
 LINES = "products.assess.lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
-LINE_SETTINGS = settings_of("assess.LINE_SETTINGS", LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
+LINE_SETTINGS = settings_of(LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
 
 
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
-    SUMMARY = "Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps."
-    TAGS = ("accuracy", "miscoding", "completeness", "correctness", "buffer", "validation", "reference", "ground truth")
     LOOKS = {"OUTPUT": "ASSESSED_LINES"}
-    NUMBERS = (
-        ("COMPLETENESS", tr("Completeness (%)")), ("CORRECTNESS", tr("Correctness (%)")),
-        ("QUALITY", tr("Quality (%)")), ("MISCODING", tr("Miscoding (%)")),
-        ("PRECISION", tr("Precision, the same as correctness (%)")), ("RECALL", tr("Recall, the same as completeness (%)")), ("F1", tr("F1 (%)")),
-        ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
-        ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")), ("GAPS_PER_KM", tr("Gaps per km")),
-        ("MEAN_GAP", tr("Mean length of the gaps (m)")), ("RESULT_LENGTH", tr("Length of the result (m)")),
-        ("REFERENCE_LENGTH", tr("Length of the reference (m)")),
-    )
+    NUMBERS = ("COMPLETENESS CORRECTNESS QUALITY MISCODING PRECISION RECALL F1 MEAN RMSE P95 MAXIMUM HEIGHT_RMSE GAPS_PER_KM MEAN_GAP "
+               "RESULT_LENGTH REFERENCE_LENGTH").split()
 
     def declare(self):
-        self.add_input("layer", "INPUT", tr("Driving lines to assess"), tr("Lines that were made."), "LineStringZ")
-        self.add_input("layer", "REFERENCE", tr("Reference lines"), tr(
-            "Lines that are known to be right, such as those drawn over an orthoimage."), "LineStringZ")
+        self.add_input("layer", "INPUT", geometry="LineStringZ")
+        self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, LINES, tr("Tolerances (m)"), tr("Sizes of the buffer, with commas between them. The report has a row for each."))
-        self.add_input("choice", "WIDTH", tr("Tolerances are"),
-                       tr("Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. "
-                          "Published figures seldom say which they mean; the report shows both."), default=WIDTHS[0], choices=WIDTHS)
+        add_tolerances(self, LINES)
+        self.add_input("choice", "WIDTH", default=WIDTHS[0], choices=WIDTHS)
         self.add_settings(LINE_SETTINGS)
         add_area(self)
-        self.add_sink("OUTPUT", tr("Driving lines by outcome"), tr("The lines cut where the outcome changes: false pieces lie outside the buffer."),
-                      fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
         self.add_report()
 
     def work(self, call, progress):

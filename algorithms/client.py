@@ -15,24 +15,16 @@ TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "D
 
 class ExportTemplate(Algorithm):
     ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
-    SUMMARY = "Writes the road map with a client's own layers, feature codes, fields and units, as a table of the client's says it."
-    TAGS = ("client", "feature code", "catalogue", "schema", "mapping", "GeoPackage", "DXF", "PostGIS")
-    NUMBERS = (("FEATURES", tr("Features")), ("LAYERS", tr("Layers")), ("LEFT_OUT", tr("Features that no row takes")))
+    NUMBERS = "FEATURES LAYERS LEFT_OUT".split()
 
     def declare(self):
-        self.add_input("file", "TEMPLATE", tr("Template"), tr("A table of rows that say what becomes what, in UTF-8."),
-                       file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
+        self.add_input("file", "TEMPLATE", file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
         for name in TEMPLATE_LAYERS:
-            self.add_map_layer(name, tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
-        self.add_input("file", "OFFICE", tr("GeoPackage of the client"), tr(
-            "With the client's layers, which may be empty. It stays as it is; the result is a copy with the features added."),
-            optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
-        self.add_input("connection", "CONNECTION", tr("PostGIS connection"), tr(
-            "By the name that QGIS keeps it under, with its password; outside QGIS, the name of a service in ~/.pg_service.conf."), optional=True)
-        self.add_input("schema", "SCHEMA", tr("Schema of PostGIS"), tr("It must be there. A second run adds its features to those of the first."),
-                       optional=True, of="CONNECTION")
-        self.add_output("file", "OUTPUT", tr("Client's map"), tr("A GeoPackage, or a DXF drawing by its ending .dxf."), optional=True,
-                        suffixes=(".gpkg", ".dxf"), file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
+            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
+        self.add_input("file", "OFFICE", optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
+        self.add_input("connection", "CONNECTION", optional=True)
+        self.add_input("schema", "SCHEMA", optional=True, of="CONNECTION")
+        self.add_output("file", "OUTPUT", optional=True, suffixes=(".gpkg", ".dxf"), file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
 
     def work(self, call, progress):
         from ..core.io.crs import parse_crs, same_crs

@@ -10,40 +10,25 @@ from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
-CLOUD_SETTINGS = settings_of("cloud.CLOUD_SETTINGS", "products.cloud.classify:CloudSettings", "GROUND_THICKNESS CURB_WIDTH REACH_BESIDE",
+CLOUD_SETTINGS = settings_of("products.cloud.classify:CloudSettings", "GROUND_THICKNESS CURB_WIDTH REACH_BESIDE",
     GROUND_THICKNESS=dict(field="ground"), CURB_WIDTH=dict(field="curb"), REACH_BESIDE=dict(field="beside"))
-# parameter -> the fields that are read, help; in the order of CloudLayers
-CLOUD_LAYERS = {
-    "ROAD_SURFACE": ("road station_m",
-                     tr("Ground within it is road surface (class 11); without it all ground is class 2.")),
-    "ROAD_EDGES": ("road station_m height_m edge",
-                   tr("Faces and tops of curbs are those of its lines that have a height.")),
-    "MARKINGS": ("road station_m",
-                 tr("Ground within it that is brighter than the asphalt about it is paint.")),
-    "ROADSIDE": ("road station_m kind height_m",
-                 tr("Made by Roadside: what stands on its lines is guard rail, barrier, wall, fence or, of hedges, vegetation.")),
-    "ROADSIDE_OBJECTS": ("road station_m kind height_m diam_m",
-                         tr("Made by Roadside: points about them are poles and signs; trunks are vegetation.")),
-}
+# parameter -> the fields that are read; in the order of CloudLayers
+CLOUD_LAYERS = {"ROAD_SURFACE": "road station_m", "ROAD_EDGES": "road station_m height_m edge", "MARKINGS": "road station_m",
+                "ROADSIDE": "road station_m kind height_m", "ROADSIDE_OBJECTS": "road station_m kind height_m diam_m"}
 
 
 class ClassifyCloud(Algorithm):
     ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
-    SUMMARY = "Gives the survey's point clouds back: every point with its class and its station, offset and height above the road."
-    TAGS = ("classification", "ASPRS", "LAS", "LAZ", "unroll", "straighten", "station", "offset")
-    NUMBERS = (("FILES", tr("Files")), ("POINTS", tr("Points")), ("ROAD_POINTS", tr("Points of the road surface")),
-               ("PAINT_POINTS", tr("Points of paint")), ("CURB_POINTS", tr("Points of curbs")))
+    NUMBERS = "FILES POINTS ROAD_POINTS PAINT_POINTS CURB_POINTS".split()
 
     def declare(self):
         self.add_survey()
-        for name, (_, text) in CLOUD_LAYERS.items():
-            self.add_map_layer(name, text, optional=True)
+        for name in CLOUD_LAYERS:
+            self.add_map_layer(name, optional=True)
         self.add_settings(CLOUD_SETTINGS, advanced=True)
         self.add_settings(READING_SETTINGS)
-        self.add_output("folder", "OUTPUT", tr("Classified clouds"), tr("A folder for the files, which have the names of the inputs."))
-        self.add_output("folder", "UNROLLED", tr("Unrolled clouds"), tr(
-            "A folder for copies with the road laid out straight, to draw along it quickly: x is the station, y the offset (100 m farther down for "
-            "every further road), z the height above the road. Points beyond the corridor are left out."), optional=True, by_default=False)
+        self.add_output("folder", "OUTPUT")
+        self.add_output("folder", "UNROLLED", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..core.survey.las.point_fields import in_one_scale, intensity_source_of
@@ -57,7 +42,7 @@ class ClassifyCloud(Algorithm):
         # what was drawn by hand has no station
         layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
                                              if field.name in read.split()], MAP_LAYERS[name].geometry)
-                  for name, (read, _) in CLOUD_LAYERS.items()}
+                  for name, read in CLOUD_LAYERS.items()}
         survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
         samples = sample_files(files)
         intensity = intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]

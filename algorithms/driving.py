@@ -30,28 +30,23 @@ from .texts import tr
 if TYPE_CHECKING:
     from ..core.corrections.corrections import Corrections
 
-DRIVING_SETTINGS = settings_of("driving.DRIVING_SETTINGS", "core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
+DRIVING_SETTINGS = settings_of("core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
     COUNTRY=dict(choices=tuple(COUNTRIES)), TRAFFIC_SIDE=dict(choices=("automatic", "right", "left")))
 
 
 class DrivingLines(Algorithm):
     ID, TITLE, GROUP = "drivinglines", "Driving lines", "Driving"
-    SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
-    TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
     RETIRED = ("MAX_BRIDGE", "MAX_INFERRED", "SHORTEST")
 
     def declare(self):
-        self.add_map_layer("MARKING_LINES", tr("The layer written by Fit marking lines."))
+        self.add_map_layer("MARKING_LINES")
         self.add_trajectory()
-        self.add_map_layer("MARKINGS", tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are "
-                                          "distinguished."), optional=True)
-        self.add_map_layer("ROAD_EDGES", tr("With it lanes without an outer line end at the edge, and lanes go on between the edges from where "
-                                            "their paint ends to the mouth of a junction."), optional=True)
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_map_layer("MARKINGS", optional=True)
+        self.add_map_layer("ROAD_EDGES", optional=True)
+        self.add_input("cloud", "ROAD_POINTS", optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_map_sink("DRIVING_LINES")
-        self.add_map_sink("LANES", tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this "
-                                      "layer."), optional=True)
+        self.add_map_sink("LANES", optional=True)
         self.add_map_sink("CURVE_ELEMENTS", optional=True)
 
     def work(self, call, progress):
@@ -77,21 +72,8 @@ class DrivingLines(Algorithm):
 
 MEASURED = "measured"
 
-NUMBERS = (
-    ("ROADS", tr("Roads")),
-    ("ROAD_LENGTH", tr("Length of the roads (m)")),
-    ("EDGE_LENGTH", tr("Length of the road edges (m)")),
-    ("EDGES_MEASURED", tr("Of the road edges measured (%)")),
-    ("LINE_LENGTH", tr("Length of the marking lines (m)")),
-    ("LINES_MEASURED", tr("Of the marking lines measured (%)")),
-    ("LANE_COUNT", tr("Lanes")),
-    ("LANE_LENGTH", tr("Length of the driving lines (m)")),
-    ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
-    ("MARKING_COUNT", tr("Markings")),
-    ("TRUST", tr("Confidence of the driving lines, mean along them (0 to 1)")),
-    ("CORRECTIONS_MADE", tr("Corrections made")),
-    ("CORRECTIONS_UNMATCHED", tr("Corrections that match nothing")),
-)
+NUMBERS = ("ROADS ROAD_LENGTH EDGE_LENGTH EDGES_MEASURED LINE_LENGTH LINES_MEASURED LANE_COUNT LANE_LENGTH LANES_MEASURED MARKING_COUNT "
+           "TRUST CORRECTIONS_MADE CORRECTIONS_UNMATCHED").split()
 
 
 def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,
@@ -152,8 +134,6 @@ ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
 
 class RoadMap(Algorithm):
     ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
-    SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
-    TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
     WHOLE_MAP = True
     NUMBERS = NUMBERS
     RETIRED = ("INTERVAL", "SCANLINE_MIN_HEIGHT", "LINE_DISTANCE")
@@ -161,12 +141,10 @@ class RoadMap(Algorithm):
     def declare(self):
         # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
         self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
-        self.add_settings((METHOD_SETTING,), advanced=True)
+        self.add_settings(METHOD_SETTING, advanced=True)
         for stage, specs in STAGES.items():
             if stage == "intensity":
-                self.add_input("flag", "CORRECT_INTENSITY", tr("Correct intensity first"),
-                               tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was "
-                                  "corrected already."), default=True, advanced=True)
+                self.add_input("flag", "CORRECT_INTENSITY", default=True, advanced=True)
             self.add_settings(specs, only=OFFERED, advanced=True)
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
@@ -175,11 +153,10 @@ class RoadMap(Algorithm):
         add_execution(self)
         for name in LAYERS:
             self.add_map_sink(name, optional=True)
-        self.add_map_sink("PASSES", tr("Where the vehicle drove, as this run used it: one line a pass."), optional=True)
+        self.add_map_sink("PASSES", optional=True)
         self.add_map_sink("CURB_POINTS", optional=True, by_default=False)
-        self.add_output("cloud", "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True,
-                        by_default=False)
-        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_output("cloud", "ROAD_POINTS", optional=True, by_default=False)
+        self.add_output("raster", "INTENSITY_IMAGE", optional=True)
         self.add_report()
 
     def work(self, call, progress):

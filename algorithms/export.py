@@ -14,33 +14,22 @@ from .map_layers import MAP_LAYERS
 from .survey_input import road_points_of
 from .texts import languages, told, tr
 
-# Layers that a map is read into beside the lanes
-READ_LAYERS = {
-    "DRIVING_LINES": tr("The middle of every lane that is driven, in the direction of travel."),
-    "MARKING_LINES": tr("Borders that are painted."),
-    "ROAD_EDGES": tr("Curbs and borders of the road."),
-    "MARKINGS": tr("Crossings, stop lines, arrows and hatched areas."),
-    "SIGNALS": tr("Traffic lights and signs with the lanes that they hold for, and poles."),
-}
-MAP_NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("LENGTH", tr("Length of the driven lanes (m)")))
+READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
+MAP_NUMBERS = "LANE_COUNT LENGTH".split()
 
 
-def add_map_layers(algorithm, crs_text):
+def add_map_layers(algorithm):
     """The layers that a map is read into, and their CRS."""
-    algorithm.add_input("crs", "CRS", tr("CRS of the layers"), crs_text, optional=True)
-    algorithm.add_sink("LANES", tr("Lanes"), tr("An area for each lane and piece, with the lanes that follow it, and what the map says of its road."),
-                       fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
-    for name, text in READ_LAYERS.items():
-        algorithm.add_map_sink(name, text, optional=True)
+    algorithm.add_input("crs", "CRS", optional=True)
+    algorithm.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+    for name in READ_LAYERS:
+        algorithm.add_map_sink(name, optional=True)
 
 
-def add_any_map(algorithm, crs_label):
+def add_any_map(algorithm):
     """A file of either format, and the CRS that it is read in."""
-    algorithm.add_input("file", "INPUT", tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."),
-                        file_filter="HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)")
-    algorithm.add_input("crs", "CRS", crs_label, tr(
-        "OpenDRIVE: only where the file does not say it. Lanelet2: projected, such as that of the survey; empty takes the UTM zone of the map."),
-        optional=True)
+    algorithm.add_input("file", "INPUT", file_filter="HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)")
+    algorithm.add_input("crs", "CRS", optional=True)
 
 
 def map_file(call):
@@ -87,28 +76,21 @@ def write_map_layers(call, layers, progress):
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
-# Layers that an export takes beside the lanes -> the fields that are read, help
-EXPORTED_LAYERS = {
-    "DRIVING_LINES": ("road lane status station_m end_m sigma_m", tr(
-        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from them.")),
-    "MARKING_LINES": ("road line kind pattern width_m colour", tr("The widths of the painted borders, and from Colours of paint their colours.")),
-    "ROAD_EDGES": ("road height_m edge", tr("The heights of curbs.")),
-    "MARKINGS": ("road class", tr("Zebra crossings, stop lines, arrows and hatched areas.")),
-}
+# Layers that an export takes beside the lanes -> the fields that are read
+EXPORTED_LAYERS = {"DRIVING_LINES": "road lane status station_m end_m sigma_m", "MARKING_LINES": "road line kind pattern width_m colour",
+                   "ROAD_EDGES": "road height_m edge", "MARKINGS": "road class"}
 
 
 def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
-    algorithm.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
-    for name, (_, text) in EXPORTED_LAYERS.items():
-        algorithm.add_map_layer(name, text, optional=True)
-    algorithm.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
+    algorithm.add_map_layer("LANES")
+    for name in EXPORTED_LAYERS:
+        algorithm.add_map_layer(name, optional=True)
+    algorithm.add_input("cloud", "ROAD_POINTS", optional=True)
 
 
 def add_signals(algorithm):
-    algorithm.add_map_layer("SIGNALS", tr(
-        "Traffic lights, signs and poles: of an imported map, or the poles and signs of Roadside. The field lanes names the lanes that obey."),
-        optional=True)
+    algorithm.add_map_layer("SIGNALS", optional=True)
 
 
 def road_map_source(call, progress):
@@ -118,7 +100,7 @@ def road_map_source(call, progress):
 
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
     layers = {name.lower(): call.features(name, [field for field in [*MAP_LAYERS[name].schema, COLOUR] if field.name in read.split()],
-                                          MAP_LAYERS[name].geometry) for name, (read, _) in EXPORTED_LAYERS.items()}
+                                          MAP_LAYERS[name].geometry) for name, read in EXPORTED_LAYERS.items()}
     source = checked(RoadMapSource(Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"), attributes=known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
         from ..products.export.sources import with_surface_heights
@@ -150,25 +132,20 @@ def fault_table(findings):
     return [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
 
 
-ATTRIBUTE_SETTINGS = settings_of("export.ATTRIBUTE_SETTINGS", "products.export.road_attributes:AttributeSettings", "CORRIDOR")
+ATTRIBUTE_SETTINGS = settings_of("products.export.road_attributes:AttributeSettings", "CORRIDOR")
 
 
 class RoadAttributes(Algorithm):
     ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
-    SUMMARY = "Gives lanes the name, number, speed limit, surface and number of lanes of the OpenStreetMap way that they lie along."
-    TAGS = ("OpenStreetMap", "OSM", "speed limit", "maxspeed", "street name", "surface", "HD map")
     LOOKS = {"OUTPUT": "LANES"}
-    NUMBERS = (("LANE_COUNT", tr("Lanes and pieces")), ("KNOWN", tr("Lanes of which something is known")),
-               ("SPEEDS", tr("Lanes with a speed limit")), ("NAMES", tr("Lanes with a name")))
+    NUMBERS = "LANE_COUNT KNOWN SPEEDS NAMES".split()
 
     def declare(self):
-        self.add_map_layer("LANES", tr("Made by Driving lines or Road map, with its fields and heights."))
-        self.add_input("file", "OSM_FILE", tr("OpenStreetMap file"), tr("An extract in XML with the ending .osm, that holds the roads."),
-                       optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
-        self.add_input("layer", "WAYS", tr("Ways"), tr("Instead of the file: lines with the fields name, ref, maxspeed, lanes, oneway, surface, "
-                                                       "highway, as far as there are, or other_tags."), optional=True)
+        self.add_map_layer("LANES")
+        self.add_input("file", "OSM_FILE", optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
+        self.add_input("layer", "WAYS", optional=True)
         self.add_settings(ATTRIBUTE_SETTINGS)
-        self.add_sink("OUTPUT", tr("Lanes with attributes"), tr("The same lanes."), fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
+        self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
 
     def work(self, call, progress):
         from ..core.driving.layers import Lanes
@@ -215,32 +192,25 @@ def _ways_of_layer(source, crs):
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
 VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
-ROAD_SETTINGS = settings_of("export.ROAD_SETTINGS", ROADS, "TOLERANCE")
+ROAD_SETTINGS = settings_of(ROADS, "TOLERANCE")
 
 
 def add_road_choices(algorithm):
     """How OpenDRIVE is written."""
-    algorithm.add_input("choice", "VERSION", tr("Version"), tr("Of OpenDRIVE; older simulators read 1.7."), default=VERSIONS[0], choices=VERSIONS)
+    algorithm.add_input("choice", "VERSION", default=VERSIONS[0], choices=VERSIONS)
     algorithm.add_settings(ROAD_SETTINGS)
-    algorithm.add_input("choice", "TRAFFIC_SIDE", tr("Side of traffic"), tr(
-        "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), default=SIDES[0], choices=SIDES)
+    algorithm.add_input("choice", "TRAFFIC_SIDE", default=SIDES[0], choices=SIDES)
 
 
 class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
-    SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
-    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
-    NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
-               ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
-               ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
-               ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
-               ("FINDINGS", tr("Findings of the check")))
+    NUMBERS = "ROADS JUNCTIONS SUCCESSORS BORDER_MAXIMUM HEIGHT_MAXIMUM DRIVING_LINE_P95 FINDINGS".split()
 
     def declare(self):
         add_road_map_layers(self)
         add_road_choices(self)
         add_signals(self)
-        self.add_output("file", "OUTPUT", tr("OpenDRIVE file"), tr("The map."), suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
+        self.add_output("file", "OUTPUT", suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
 
     def work(self, call, progress):
@@ -308,30 +278,25 @@ def _report(name, whole, network, shown, misses, notes):
 
 LANELETS = "products.export.lanelet_export:LaneletSettings"
 LOCATIONS = ("urban", "nonurban")
-LANELET_SETTINGS = settings_of("export.LANELET_SETTINGS", LANELETS, "SPEED_LIMIT")
+LANELET_SETTINGS = settings_of(LANELETS, "SPEED_LIMIT")
 
 
 def add_lanelet_choices(algorithm):
     """How Lanelet2 is written."""
     algorithm.add_settings(LANELET_SETTINGS)
-    algorithm.add_input("choice", "LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
-                        default=LOCATIONS[0], choices=LOCATIONS)
-    algorithm.add_input("flag", "LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
-        "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), default=False)
+    algorithm.add_input("choice", "LOCATION", default=LOCATIONS[0], choices=LOCATIONS)
+    algorithm.add_input("flag", "LOCAL_COORDINATES", default=False)
 
 
 class ExportLanelet2(Algorithm):
     ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
-    SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
-    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
-    NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
-               ("FINDINGS", tr("Findings of the check")))
+    NUMBERS = "LANELETS WAYS NODES SUCCESSORS FINDINGS".split()
 
     def declare(self):
         add_road_map_layers(self)
         add_lanelet_choices(self)
         add_signals(self)
-        self.add_output("file", "OUTPUT", tr("Lanelet2 file"), tr("The map."), suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
+        self.add_output("file", "OUTPUT", suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
         self.add_report()
 
     def work(self, call, progress):
@@ -380,22 +345,18 @@ def write_lanelet2(call, source, name, progress):
 
 
 SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}   # format -> endings
-CAD_SETTINGS = settings_of("export.CAD_SETTINGS", ROADS, "TOLERANCE")
+CAD_SETTINGS = settings_of(ROADS, "TOLERANCE")
 
 
 class ExportCad(Algorithm):
     ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
-    SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
-    TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
-    NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+    NUMBERS = "LINES ALIGNMENTS MISSED".split()
 
     def declare(self):
         add_road_map_layers(self)
-        self.add_input("choice", "FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
-                       default="dxf", choices=tuple(SUFFIXES))
+        self.add_input("choice", "FORMAT", default="dxf", choices=tuple(SUFFIXES))
         self.add_settings(CAD_SETTINGS)
-        self.add_output("file", "OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."),
-                        suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
+        self.add_output("file", "OUTPUT", suffixes=(".dxf", ".xml", ".landxml"), file_filter="DXF (*.dxf);;LandXML (*.xml *.landxml)")
         self.add_report()
 
     def work(self, call, progress):
@@ -469,38 +430,26 @@ class SheetSettings(Limited):
     section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
 
 
-SHEET_SETTINGS = settings_of("export.SHEET_SETTINGS", "algorithms.export:SheetSettings",
+SHEET_SETTINGS = settings_of("algorithms.export:SheetSettings",
     "TITLE OFFICE AUTHOR PAPER ORIENTATION SCALE PROFILE SECTION_INTERVAL HEIGHT_SYSTEM* CREDIT*", PAPER=dict(choices=PAPERS),
     ORIENTATION=dict(choices=("landscape", "portrait")), SCALE=dict(choices=("automatic", *SCALES)), HEIGHT_SYSTEM=dict(field="heights"))
 
 
 class PrintSheets(Algorithm):
     ID, TITLE, GROUP = "printsheets", "Sheets along the road", "Export"
-    SUMMARY = "Draws the road map on sheets of paper that follow the road, with longitudinal profile and cross-sections, as one PDF."
-    TAGS = ("print", "plan", "sheet", "PDF", "layout", "atlas", "profile", "title block", "map")
-    NUMBERS = (("SHEETS", tr("Plan sheets")), ("PAGES", tr("Pages")), ("SCALE_NUMBER", tr("Denominator of the scale")))
+    NUMBERS = "SHEETS PAGES SCALE_NUMBER".split()
     DRAWS = True
 
     def declare(self):
         # what is printed on every sheet comes first: the layers are chosen already
         self.add_settings(SHEET_SETTINGS)
         for name in DRAWN:
-            area = MAP_LAYERS[name].geometry == "PolygonZ"
-            text = tr("Drawn on the sheets, if given.") if area else tr("Drawn on the sheets, and leads the axis if given.")
-            if name == "CROSS_SECTIONS":
-                text = tr("Of the algorithm Cross-sections: drawn on the sheets, and the pages of sections show them with the limits not kept.")
-            self.add_map_layer(name, text, optional=True)
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr(
-            "With it cross-sections show the ground as it was measured; without it straight lines between edges, paint and driving lines."),
-            optional=True)
-        self.add_input("painted", "BELOW", tr("Layer below (orthoimage, web map)"), tr(
-            "Drawn below all others and left out of the legend. Lanes and Road surface cover it where they are given."),
-                       optional=True)
-        self.add_input("choice", "LANGUAGE", tr("Language of the sheets"), tr("automatic is the language of the program."), default="automatic",
-                       choices=("automatic", *languages()))
-        self.add_input("flag", "KEEP", tr("Keep the layout in the project"),
-                       tr("Then all pages can be changed in QGIS's layout designer and printed from there: menu Project, Layouts."), default=True)
-        self.add_output("file", "OUTPUT", tr("Sheets"), tr("All pages in one file."), suffixes=(".pdf",), file_filter="PDF (*.pdf)")
+            self.add_map_layer(name, optional=True)
+        self.add_input("cloud", "ROAD_POINTS", optional=True)
+        self.add_input("painted", "BELOW", optional=True)
+        self.add_input("choice", "LANGUAGE", default="automatic", choices=("automatic", *languages()))
+        self.add_input("flag", "KEEP", default=True)
+        self.add_output("file", "OUTPUT", suffixes=(".pdf",), file_filter="PDF (*.pdf)")
 
     def work(self, call, progress):
         return call.print_sheets(call.settings(SHEET_SETTINGS), progress)
@@ -508,15 +457,11 @@ class PrintSheets(Algorithm):
 
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
-    SUMMARY = "Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it."
-    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
-        self.add_input("file", "INPUT", tr("OpenDRIVE file"), tr("A map with the ending .xodr."),
-                       file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
-        add_map_layers(self, tr("Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this "
-                                "CRS."))
+        self.add_input("file", "INPUT", file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
+        add_map_layers(self)
 
     def work(self, call, progress):
         return write_map_layers(call, map_layers(call, progress, False), progress)
@@ -524,14 +469,11 @@ class ImportOpenDrive(Algorithm):
 
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    SUMMARY = "Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it."
-    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
     NUMBERS = MAP_NUMBERS
 
     def declare(self):
-        self.add_input("file", "INPUT", tr("Lanelet2 file"), tr("A map with the ending .osm."),
-                       file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
-        add_map_layers(self, tr("Projected, such as that of the survey. Empty takes the UTM zone of the map."))
+        self.add_input("file", "INPUT", file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
+        add_map_layers(self)
 
     def work(self, call, progress):
         return write_map_layers(call, map_layers(call, progress, True), progress)
@@ -539,17 +481,13 @@ class ImportLanelet2(Algorithm):
 
 class ConvertMap(Algorithm):
     ID, TITLE, GROUP = "converthdmap", "Convert HD map", "Export"
-    SUMMARY = "Writes an OpenDRIVE map as Lanelet2, or a Lanelet2 map as OpenDRIVE, with its signals, crossings, poles and speed limits."
-    TAGS = ("OpenDRIVE", "Lanelet2", "xodr", "osm", "HD map", "conversion", "Autoware", "CARLA", "esmini")
-    NUMBERS = (("SUCCESSORS", tr("Links from one lane to the next")), ("FINDINGS", tr("Findings of the check")),
-               ("SIGNAL_COUNT", tr("Signals and poles")), ("LEFT_OUT", tr("What is not carried over")))
+    NUMBERS = "SUCCESSORS FINDINGS SIGNAL_COUNT LEFT_OUT".split()
 
     def declare(self):
-        add_any_map(self, tr("CRS of the map in metres"))
+        add_any_map(self)
         add_road_choices(self)
         add_lanelet_choices(self)
-        self.add_output("file", "OUTPUT", tr("Converted map"), tr("With the ending of the other format, .osm or .xodr."), suffixes=(".osm", ".xodr"),
-                        file_filter="Lanelet2 (*.osm);;OpenDRIVE (*.xodr)")
+        self.add_output("file", "OUTPUT", suffixes=(".osm", ".xodr"), file_filter="Lanelet2 (*.osm);;OpenDRIVE (*.xodr)")
         self.add_report()
 
     def work(self, call, progress):
@@ -572,17 +510,12 @@ ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of th
 
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
-    SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
-    TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}
-    NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
-               ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
+    NUMBERS = "FINDINGS FAULTS LANES SUCCESSORS NEIGHBOURS".split()
 
     def declare(self):
-        add_any_map(self, tr("CRS of the findings"))
-        self.add_sink("OUTPUT", tr("Findings"), tr(
-            "A point for each finding, with the row of the report in which the same findings are one. Heights are the map's."),
-            fields=MAP_FINDINGS, geometry="PointZ")
+        add_any_map(self)
+        self.add_sink("OUTPUT", fields=MAP_FINDINGS, geometry="PointZ")
         self.add_report()
 
     def work(self, call, progress):

@@ -9,20 +9,17 @@ from .algorithm import Algorithm, ParameterSpec, settings_of
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
 from .texts import tr
 
-INTENSITY_SETTINGS = settings_of("markings.INTENSITY_SETTINGS", "core.intensity.correction:IntensitySettings", "SCALE*",
-    SCALE=dict(choices=("automatic", "linear", "logarithmic")))
+INTENSITY_SETTINGS = settings_of("core.intensity.correction:IntensitySettings", "SCALE*", SCALE=dict(choices=("automatic", "linear", "logarithmic")))
 
 
 class CorrectIntensity(Algorithm):
     ID, TITLE, GROUP = "correctintensity", "Correct intensity", "Markings"
-    SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
-    TAGS = ("intensity", "range correction", "calibration")
 
     def declare(self):
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
+        self.add_input("cloud", "ROAD_POINTS")
         self.add_trajectory()
         self.add_settings(INTENSITY_SETTINGS)
-        self.add_output("cloud", "OUTPUT", tr("Corrected road points"))
+        self.add_output("cloud", "OUTPUT")
         self.add_report()
 
     def work(self, call, progress):
@@ -42,23 +39,18 @@ class CorrectIntensity(Algorithm):
 
 IMAGE = "core.intensity.image:ImageSettings"
 
-IMAGE_SETTINGS = settings_of("markings.IMAGE_SETTINGS", IMAGE, "CELL_SIZE")
+IMAGE_SETTINGS = settings_of(IMAGE, "CELL_SIZE")
 
 
 class IntensityImage(Algorithm):
     ID, TITLE, GROUP = "intensityimage", "Intensity image", "Markings"
-    SUMMARY = "Interpolates the intensity of road points into a GeoTIFF: near and bright points count more."
-    TAGS = ("intensity", "image", "raster", "orthophoto")
     RETIRED = ("POWER", "BETA", "RADIUS_CELLS")
 
     def declare(self):
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
-                       tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."))
+        self.add_input("cloud", "ROAD_POINTS")
         self.add_settings(IMAGE_SETTINGS)
-        self.add_output("raster", "INTENSITY_IMAGE", tr("Intensity image"))
-        self.add_output("raster", "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
-                        tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."), optional=True,
-                        by_default=False)
+        self.add_output("raster", "INTENSITY_IMAGE")
+        self.add_output("raster", "DISPLAY_IMAGE", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..core.intensity.image import write_intensity_image
@@ -71,14 +63,9 @@ class IntensityImage(Algorithm):
             write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
 
 
-MARKING_METHOD = ParameterSpec(
-    "choice", "METHOD", tr("Method"),
-    tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published "
-       "methods to compare with. intensity-peaks looks for narrow peaks in profiles across the road and finds lines only; point-segments sets "
-       "thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint."),
-    default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
+MARKING_METHOD = ParameterSpec("choice", "METHOD", default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
 
-MARKING_SETTINGS = settings_of("markings.MARKING_SETTINGS", "core.markings.paint.settings:MarkingSettings", "SEPARATION*")
+MARKING_SETTINGS = settings_of("core.markings.paint.settings:MarkingSettings", "SEPARATION*")
 
 
 def marking_settings(call):
@@ -90,20 +77,17 @@ def marking_settings(call):
 
 class ExtractMarkings(Algorithm):
     ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
-    SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
-    TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
     RETIRED = ("SHORTEST_PAINT", "CLOSE", "PROFILE_LENGTH", "PROMINENCE", "NARROWEST", "WIDEST", "JUMP", "PEAK_GAP", "SHORTEST_LINE",
                "SEGMENT_LENGTH", "SEGMENT_WIDTH", "SEGMENT_SEPARATION", "NEIGHBOUR_RADIUS")
 
     def declare(self):
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
-        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
+        self.add_input("cloud", "ROAD_POINTS")
+        self.add_input("raster", "INTENSITY_IMAGE")
         self.add_trajectory()
         self.add(MARKING_METHOD)
         self.add_settings(MARKING_SETTINGS)
-        self.add_output("cloud", "MARKING_POINTS", tr("Marking points"))
-        self.add_output("raster", "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True,
-                        by_default=False)
+        self.add_output("cloud", "MARKING_POINTS")
+        self.add_output("raster", "MARKING_MASK", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..core.intensity.image import check_image_shows
@@ -120,19 +104,16 @@ class ExtractMarkings(Algorithm):
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
 
 
-OUTLIER_SETTINGS = settings_of("markings.OUTLIER_SETTINGS", "core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE",
-    SCOPE=dict(choices=("all", "windows")))
+OUTLIER_SETTINGS = settings_of("core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE", SCOPE=dict(choices=("all", "windows")))
 
 
 class RemoveOutliers(Algorithm):
     ID, TITLE, GROUP = "removeoutliers", "Remove outliers", "Markings"
-    SUMMARY = "Statistical outlier removal: points that lie farther from their neighbours than is usual go."
-    TAGS = ("outlier", "noise", "sor")
 
     def declare(self):
-        self.add_input("cloud", "INPUT", tr("Marking points"), tr("The file written by Extract markings."))
+        self.add_input("cloud", "INPUT")
         self.add_settings(OUTLIER_SETTINGS)
-        self.add_output("cloud", "OUTPUT", tr("Marking points without outliers"))
+        self.add_output("cloud", "OUTPUT")
 
     def work(self, call, progress):
         from ..core.markings.outliers import remove_outliers
@@ -144,22 +125,19 @@ class RemoveOutliers(Algorithm):
         write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
 
 
-CLUSTER_SETTINGS = settings_of("markings.CLUSTER_SETTINGS", "core.markings.objects.cluster:ClusterSettings", "DISTANCE")
+CLUSTER_SETTINGS = settings_of("core.markings.objects.cluster:ClusterSettings", "DISTANCE")
 
 
 class ClusterMarkings(Algorithm):
     ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
-    SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
-    TAGS = ("road marking", "lane marking", "cluster", "give-way line", "zigzag line", "zebra crossing", "stop line", "arrow",
-            "bicycle symbol", "bus lane")
     RETIRED = ("MIN_POINTS",)
 
     def declare(self):
-        self.add_input("cloud", "MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
+        self.add_input("cloud", "MARKING_POINTS")
         self.add_trajectory()
         self.add_settings(CLUSTER_SETTINGS)
         self.add_map_sink("MARKINGS")
-        self.add_output("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
+        self.add_output("cloud", "CLUSTERED_POINTS")
 
     def work(self, call, progress):
         from ..core.markings.objects.cluster import cluster_markings
@@ -172,29 +150,24 @@ class ClusterMarkings(Algorithm):
         call.layer("MARKINGS", markings.to_features(frame))
 
 
-LINE_SETTINGS = settings_of("markings.LINE_SETTINGS", "core.markings.lines.fit:MarkingLineSettings", "COUNTRY* CURVE DEGREE",
-    COUNTRY=dict(choices=tuple(COUNTRIES)), CURVE=dict(choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")))
+LINE_SETTINGS = settings_of("core.markings.lines.fit:MarkingLineSettings", "COUNTRY* CURVE DEGREE", COUNTRY=dict(choices=tuple(COUNTRIES)),
+    CURVE=dict(choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")))
 
 
 class FitMarkingLines(Algorithm):
     ID, TITLE, GROUP = "fitmarkinglines", "Fit marking lines", "Markings"
-    SUMMARY = "Links dashes along the road and fits a curve to every painted line."
     LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
-    TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
     RETIRED = ("LINK_GAP", "LINK_BRIDGE", "MIN_PAINT")
 
     def declare(self):
-        self.add_input("cloud", "CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
-        self.add_map_layer("MARKINGS", tr("The layer written by Cluster markings together with the points."))
+        self.add_input("cloud", "CLUSTERED_POINTS")
+        self.add_map_layer("MARKINGS")
         self.add_trajectory()
-        self.add_map_layer("ROAD_EDGES", tr("With it curbs help to tell edge lines from lane lines."), optional=True)
-        self.add_input("cloud", "ROAD_POINTS", tr("Road points"),
-                       tr("With it the width of the road helps to tell what a line separates."), optional=True)
+        self.add_map_layer("ROAD_EDGES", optional=True)
+        self.add_input("cloud", "ROAD_POINTS", optional=True)
         self.add_settings(LINE_SETTINGS)
         self.add_map_sink("MARKING_LINES")
-        self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
-                      text=tr("The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a "
-                              "centre line looks like any other."))
+        self.add_sink("NAMED_MARKINGS", fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..core.markings.lines.fit import fit_marking_lines, named_by_lines
@@ -215,27 +188,22 @@ class FitMarkingLines(Algorithm):
             call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))
 
 
-COLOUR_SETTINGS = settings_of("markings.COLOUR_SETTINGS", "products.cloud.colours:ColourSettings", "AROUND*")
+COLOUR_SETTINGS = settings_of("products.cloud.colours:ColourSettings", "AROUND*")
 
 
 class ColoursOfPaint(Algorithm):
     ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
-    SUMMARY = "Tells yellow paint from white, from the colours of the points or from an orthoimage."
-    TAGS = ("yellow", "white", "colour", "color", "RGB", "orthoimage", "centre line")
     LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
-    NUMBERS = (("WHITE", tr("White markings")), ("YELLOW", tr("Yellow markings")), ("OPEN", tr("Markings whose colour stays open")))
+    NUMBERS = "WHITE YELLOW OPEN".split()
 
     def declare(self):
-        self.add_map_layer("MARKINGS", tr("As Cluster markings and Road map make it."))
-        self.add_map_layer("MARKING_LINES", tr("The lines that the markings make up."), optional=True)
-        self.add_input("clouds", "POINT_CLOUDS", tr("Point clouds with colours"),
-                       tr("The files of the survey whose points have red, green and blue."), optional=True)
-        self.add_input("raster", "IMAGE", tr("Orthoimage"),
-                       tr("In place of coloured points, or beside them: an image with a position on the map and the bands red, green and blue."),
-                       optional=True)
+        self.add_map_layer("MARKINGS")
+        self.add_map_layer("MARKING_LINES", optional=True)
+        self.add_input("clouds", "POINT_CLOUDS", optional=True)
+        self.add_input("raster", "IMAGE", optional=True)
         self.add_settings(COLOUR_SETTINGS)
-        self.add_sink("COLOURED_MARKINGS", tr("Markings with colours"), fields=[*MARKINGS, COLOUR], geometry="PolygonZ")
-        self.add_sink("COLOURED_LINES", tr("Marking lines with colours"), fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True)
+        self.add_sink("COLOURED_MARKINGS", fields=[*MARKINGS, COLOUR], geometry="PolygonZ")
+        self.add_sink("COLOURED_LINES", fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
         from ..core.io.crs import check_same_crs

@@ -35,30 +35,19 @@ def _row(wkb, values, placed):
     return [*values, x, y, z if z == z else None]
 
 
-PROPOSE_SETTINGS = settings_of("overlay.PROPOSE_SETTINGS", "products.overlay.matching.propose:ProposalSettings",
-    "PIXEL_SIZE SEARCH TOLERANCE* MIN_SCORE* COUNT*")
+PROPOSE_SETTINGS = settings_of("products.overlay.matching.propose:ProposalSettings", "PIXEL_SIZE SEARCH TOLERANCE* MIN_SCORE* COUNT*")
 
 
 class ProposeControlPoints(Algorithm):
     ID, TITLE, GROUP = "proposecontrolpoints", "Propose control points", "Orthoimages"
-    SUMMARY = "Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image."
-    TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")
-    NUMBERS = (
-        ("PROPOSED", tr("Pairs proposed")),
-        ("ACCEPTED", tr("Pairs accepted")),
-        ("RMSE", tr("RMSE of the accepted pairs, each left out in turn (m)")),
-        ("GROUND_PIXEL", tr("Pixel of the image on the ground (m)")),
-        ("TURN", tr("Turn of the image, from its rows to east (°)")),
-    )
+    NUMBERS = "PROPOSED ACCEPTED RMSE GROUND_PIXEL TURN".split()
 
     def declare(self):
-        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground."))
-        self.add_input("raster", "INTENSITY_IMAGE", tr("Intensity image"), tr("As Intensity image and Road map write it."))
-        self.add_input("layer", "ROUGH_POINTS", tr("Two rough points"),
-                       tr("Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some "
-                          "metres."), optional=True)
+        self.add_input("raster", "IMAGE")
+        self.add_input("raster", "INTENSITY_IMAGE")
+        self.add_input("layer", "ROUGH_POINTS", optional=True)
         self.add_settings(PROPOSE_SETTINGS)
-        self.add_sink("CONTROL_POINTS", tr("Control points"), tr("As Georeference image takes them."), "PointZ", fields=PROPOSED_POINTS)
+        self.add_sink("CONTROL_POINTS", geometry="PointZ", fields=PROPOSED_POINTS)
         self.add_report()
 
     def work(self, call, progress):
@@ -101,42 +90,24 @@ def _rough_points(call, image, crs):
 
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
-GEOREFERENCE_SETTINGS = settings_of("overlay.GEOREFERENCE_SETTINGS", "products.overlay.georeference:GeoreferenceSettings",
+GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceSettings",
     "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*", EXTRAPOLATION=dict(choices=("automatic", "draw", "leave-out")),
     RESAMPLING=dict(choices=("bilinear", "nearest", "cubic")))
 
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
-    SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
-    TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
-    NUMBERS = (
-        ("POINTS", tr("Control points")),
-        ("RMSE", tr("RMSE of the control points (m)")),
-        ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
-        ("CHECK_POINTS", tr("Check points")),
-        ("CHECK_RMSE", tr("RMSE of the check points (m)")),
-        ("LARGEST", tr("Largest residual of a control point (m)")),
-        ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
-    )
+    NUMBERS = "POINTS RMSE LEFT_OUT_RMSE CHECK_POINTS CHECK_RMSE LARGEST OUTSIDE".split()
 
     def declare(self):
-        self.add_input("raster", "IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
-        self.add_input("layer", "GCPS", tr("Control points (layer)"),
-                       tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or "
-                          "check) sets points aside that only judge the result, a field enable switches points off."), optional=True)
-        self.add_input("file", "GCP_FILE", tr("Control points (file)"),
-                       tr("In place of a layer: the .points file of QGIS's georeferencer, the gcp_list.txt of OpenDroneMap, or a CSV with the "
-                          "columns pixel, line, easting, northing in any order. Where rows name images, those of this image are used."),
-                       optional=True, file_filter=POINTS_FILTER)
-        self.add_input("crs", "CRS", tr("CRS of the control points"),
-                       tr("Only for control points that name none of their own. It must be projected."), optional=True)
+        self.add_input("raster", "IMAGE")
+        self.add_input("layer", "GCPS", optional=True)
+        self.add_input("file", "GCP_FILE", optional=True, file_filter=POINTS_FILTER)
+        self.add_input("crs", "CRS", optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)
-        self.add_output("raster", "OUTPUT", tr("Georeferenced image"),
-                        tr("GeoTIFF with overviews; transparent or without data where the image ends."))
-        self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",
-                      optional=True, fields=RESIDUALS)
+        self.add_output("raster", "OUTPUT")
+        self.add_sink("RESIDUALS", geometry="LineStringZ", optional=True, fields=RESIDUALS)
         self.add_report()
 
     def work(self, call, progress):

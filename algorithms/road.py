@@ -3,20 +3,15 @@
 from contextlib import nullcontext
 
 from ..core.common.features import CURB_POINTS, ROAD_EDGES
-from .algorithm import Algorithm, SettingSpec, settings_of
+from .algorithm import Algorithm, settings_of
 from .survey_input import SURVEY_SETTINGS, add_execution, check_layers_on_roads, frame_of, open_survey_of
-from .texts import tr
 
-SCANLINE_SETTINGS = settings_of("road.SCANLINE_SETTINGS", "core.road.scanlines.section_planes:ScanlineSettings",
-    "INTERVAL CORRIDOR ROTATION_FREQUENCY*")
-LAYER_SETTINGS = settings_of("road.LAYER_SETTINGS", "products.scanline_layer:ScanlineLayerSettings", "SIMPLIFY RESAMPLED_SPACING*",
-    RESAMPLED_SPACING=dict(field="spacing"))
+SCANLINE_SETTINGS = settings_of("core.road.scanlines.section_planes:ScanlineSettings", "INTERVAL CORRIDOR ROTATION_FREQUENCY*")
+LAYER_SETTINGS = settings_of("products.scanline_layer:ScanlineLayerSettings", "SIMPLIFY RESAMPLED_SPACING*", RESAMPLED_SPACING=dict(field="spacing"))
 
 
 class NormalizedScanlines(Algorithm):
     ID, TITLE, GROUP = "normalizedscanlines", "Normalized scanlines", "Road"
-    SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
-    TAGS = ("scanline", "profile", "cross section", "resample")
 
     def declare(self):
         self.add_survey()
@@ -24,10 +19,8 @@ class NormalizedScanlines(Algorithm):
         self.add_settings(LAYER_SETTINGS)
         self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "INTENSITY_FROM", "FIT_PASSES", "TRAJECTORY_SIGMA"))
         add_execution(self)
-        self.add_map_sink("SCANLINES", tr("Lines with height (Z) and intensity (M)."), optional=True)
-        self.add_output("cloud", "RESAMPLED_POINTS", tr("Resampled points"), tr(
-            "Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density."),
-            optional=True, by_default=False)
+        self.add_map_sink("SCANLINES", optional=True)
+        self.add_output("cloud", "RESAMPLED_POINTS", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..products.scanline_layer import ResampledPoints, write_scanlines
@@ -43,25 +36,21 @@ class NormalizedScanlines(Algorithm):
         call.layer("SCANLINES", scanlines)
 
 
-BOUNDARY_SETTINGS = settings_of("road.BOUNDARY_SETTINGS", "core.road.scanlines.detect:ScanlineBoundarySettings",
+BOUNDARY_SETTINGS = settings_of("core.road.scanlines.detect:ScanlineBoundarySettings",
     "MIN_HEIGHT SEARCH_WIDTH* SENSOR_HEIGHT* CLIPPING_HEIGHT* DISTANCE_ACROSS* DISTANCE_ALONG* RANSAC_DISTANCE* VERTICAL_ANGLE* HORIZONTAL_ANGLE* "
     "MAX_GAP")
 
 
 class BoundariesFromScanlines(Algorithm):
     ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
-    SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
-    TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
     LOOKS = {"CORNERS": "CURB_POINTS"}
 
     def declare(self):
-        self.add_map_layer("SCANLINES", tr("The layer written by Normalized scanlines."))
+        self.add_map_layer("SCANLINES")
         self.add_trajectory()
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_sink("CORNERS", tr("Curb corners"), tr("Bottoms and tops, one of each per half metre and side."), fields=CURB_POINTS,
-                      geometry="PointZ", optional=True)
-        self.add_sink("BOUNDARIES", tr("Road boundaries"), tr("Bottom and top lines of either side."), fields=ROAD_EDGES,
-                      geometry="LineStringZ", optional=True)
+        self.add_sink("CORNERS", fields=CURB_POINTS, geometry="PointZ", optional=True)
+        self.add_sink("BOUNDARIES", fields=ROAD_EDGES, geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
         from ..core.road.scanlines.detect import LayerScanlines, boundary_lines, curbs_from_scanlines
@@ -81,23 +70,19 @@ class BoundariesFromScanlines(Algorithm):
         call.layer("BOUNDARIES", lines.to_features(frame))
 
 
-CURB_SETTINGS = settings_of("road.CURB_SETTINGS", "core.road.profiles.detect:CurbSettings",
+CURB_SETTINGS = settings_of("core.road.profiles.detect:CurbSettings",
     "BLOCK_LENGTH PROFILE_WIDTH POINT_SPACING* LAYER_JUMP* SLOPE MIN_HEIGHT MAX_HEIGHT")
 
 
 class DetectCurbs(Algorithm):
     ID, TITLE, GROUP = "detectcurbs", "Detect curbs", "Road"
-    SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    TAGS = ("curb", "kerb", "road edge")
 
     def declare(self):
         self.add_survey()
         self.add_settings(CURB_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         self.add_map_sink("CURB_POINTS")
-        self.add_sink("PRINCIPAL_POINTS", tr("Principal points"),
-                      tr("The highest point of the lowest layer of every cell: what the curbs were looked for on."), geometry="PointZ", optional=True,
-                      by_default=False)
+        self.add_sink("PRINCIPAL_POINTS", geometry="PointZ", optional=True, by_default=False)
 
     def work(self, call, progress):
         from ..core.road.profiles.detect import detect_curbs
@@ -112,16 +97,14 @@ class DetectCurbs(Algorithm):
         call.layer("CURB_POINTS", points.to_features(survey.frame))
 
 
-EDGE_SETTINGS = settings_of("road.EDGE_SETTINGS", "core.road.edges.fit:EdgeSettings", "MAX_GAP FALLBACK_WIDTH*")
+EDGE_SETTINGS = settings_of("core.road.edges.fit:EdgeSettings", "MAX_GAP FALLBACK_WIDTH*")
 
 
 class FitRoadEdges(Algorithm):
     ID, TITLE, GROUP = "fitroadedges", "Fit road edges", "Road"
-    SUMMARY = "Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so."
-    TAGS = ("curb", "kerb", "road edge", "spline")
 
     def declare(self):
-        self.add_map_layer("CURB_POINTS", tr("The layer written by Detect curbs."))
+        self.add_map_layer("CURB_POINTS")
         self.add_trajectory()
         self.add_settings(EDGE_SETTINGS)
         self.add_map_sink("ROAD_EDGES")
@@ -136,12 +119,8 @@ class FitRoadEdges(Algorithm):
         call.layer("ROAD_EDGES", edges.to_features(frame))
 
 
-METHOD_SETTING = SettingSpec(
-    "BOUNDARY_METHOD", "core.road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
-    tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
-       "lays one path along the road through what the two see: what both see counts most, and of two lines along one curb the sharper is drawn. "
-       "agree_cm says how far apart they are; it takes as long as the two together."),
-    choices=("profiles", "scanlines", "both"))
+METHOD_SETTING = settings_of("core.road.detect_boundaries:BoundarySettings", "BOUNDARY_METHOD", BOUNDARY_METHOD=dict(
+    field="method", choices=("profiles", "scanlines", "both")))
 # Both methods ask for one least height
 SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")
 OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
@@ -149,14 +128,12 @@ OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")
 
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
-    SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
-    TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
     RETIRED = ("PROFILE_WIDTH", "POINT_SPACING", "LAYER_JUMP", "INTERVAL", "ROTATION_FREQUENCY", "SCANLINE_MIN_HEIGHT", "SEARCH_WIDTH",
                "SENSOR_HEIGHT", "CLIPPING_HEIGHT", "DISTANCE_ACROSS", "DISTANCE_ALONG", "RANSAC_DISTANCE", "VERTICAL_ANGLE", "HORIZONTAL_ANGLE")
 
     def declare(self):
         self.add_survey()
-        self.add_settings((METHOD_SETTING,))
+        self.add_settings(METHOD_SETTING)
         self.add_settings(CURB_SETTINGS, only=OFFERED)
         self.add_settings(EDGE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
@@ -175,22 +152,19 @@ class DetectBoundaries(Algorithm):
         call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))
 
 
-SURFACE_SETTINGS = settings_of("road.SURFACE_SETTINGS", "core.road.surface.extract:SurfaceSettings", "MAX_WIDTH")
+SURFACE_SETTINGS = settings_of("core.road.surface.extract:SurfaceSettings", "MAX_WIDTH")
 
 
 class ExtractRoadSurface(Algorithm):
     ID, TITLE, GROUP = "extractroadsurface", "Extract road surface", "Road"
-    SUMMARY = "Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth."
-    TAGS = ("road surface", "ground")
     RETIRED = ("HEIGHT_TOLERANCE",)
 
     def declare(self):
         self.add_survey()
-        self.add_map_layer("ROAD_EDGES", tr("The layer written by Fit road edges. Without it the surface is grown on both sides."), optional=True)
+        self.add_map_layer("ROAD_EDGES", optional=True)
         self.add_settings(SURFACE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_output("cloud", "ROAD_POINTS", tr("Road points"),
-                        tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."))
+        self.add_output("cloud", "ROAD_POINTS")
         self.add_map_sink("ROAD_SURFACE", optional=True)
 
     def work(self, call, progress):

@@ -8,14 +8,14 @@ from ..core.lazy import shapely
 from .algorithm import settings_of
 from .texts import tr
 
-SURVEY_SETTINGS = settings_of("survey_input.SURVEY_SETTINGS", "core.survey.open_survey:SurveySettings",
+SURVEY_SETTINGS = settings_of("core.survey.open_survey:SurveySettings",
     "CORRIDOR* SCANNER_FIELD* TIME* INTENSITY_FROM* FIT_PASSES* TRAJECTORY_SIGMA*",
     SCANNER_FIELD=dict(choices=("automatic", "scanner_channel", "point_source_id")),
     TIME=dict(choices=("automatic", "gps", "adjusted", "week", "day")), INTENSITY_FROM=dict(choices=("intensity", "rgb")))
 # of those who draw no lines
 READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJECTORY_SIGMA")
 
-EXECUTION_SETTINGS = settings_of("survey_input.EXECUTION_SETTINGS", "core.execution.choice:ExecutionSettings", "WORKERS* SCHEDULER* INSECURE*")
+EXECUTION_SETTINGS = settings_of("core.execution.choice:ExecutionSettings", "WORKERS* SCHEDULER* INSECURE*")
 
 
 WITHOUT_TRAJECTORY = tr("Left out, it is estimated from the points (see Estimate trajectory).")
@@ -38,11 +38,7 @@ def estimated_trajectory(call, progress):
 def add_execution(algorithm):
     """Who does the work, and where finished work is kept."""
     algorithm.add_settings(EXECUTION_SETTINGS)
-    algorithm.add_input("folder", "WORK_FOLDER", tr("Work folder"),
-                        tr("A folder for finished work, about 40 bytes for every point near the road. A run that ended early, or that is repeated "
-                           "with other settings of later stages, does not read the points and find the curbs again. What was made from other files, "
-                           "settings or another version of Lanewright is not used. Nothing that is finished is ever removed; delete it when the map "
-                           "is done."), optional=True, advanced=True)
+    algorithm.add_input("folder", "WORK_FOLDER", optional=True, advanced=True)
 
 
 def execution_of(call):
@@ -205,12 +201,7 @@ NEEDED = ("action", "target")
 
 
 def add_corrections(algorithm):
-    algorithm.add_input("layer", "CORRECTIONS", tr("Corrections"),
-                        tr("What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw, take) "
-                           "and target (edge, marking, lane). Further fields: note; kind and pattern of a line that is drawn; other of a second "
-                           "reading that is taken. A row concerns what this run finds within half a metre of it, whatever its number; for lanes it "
-                           "is one metre, for move two. A row without geometry lies at its road, station_m and offset_m. What matches nothing is "
-                           "listed in log and report. The window of doubtful places writes this layer."), optional=True, advanced=True)
+    algorithm.add_input("layer", "CORRECTIONS", optional=True, advanced=True)
 
 
 def corrections_of(call):

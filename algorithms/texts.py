@@ -38,6 +38,13 @@ def speak(language="en"):
 
 @cache
 def help_texts():
-    """{id of an algorithm, or table and name of a setting: its paragraphs, in English} of help.txt."""
-    _, *parts = re.split(r"^\[(.+)\]$", Path(__file__).with_name("help.txt").read_text(encoding="utf-8"), flags=re.MULTILINE)
-    return {ID: [" ".join(part.split()) for part in text.split("\n\n") if part.strip()] for ID, text in zip(parts[::2], parts[1::2])}
+    """{id of an algorithm, name of a parameter, or both: its paragraphs, in English} of help.txt, whose first lines say how it is read."""
+    text = re.sub(r"^#.*", "", Path(__file__).with_name("help.txt").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    _, *parts = re.split(r"^\[(.+)\]$", text, flags=re.MULTILINE)
+    texts = {}
+    for heading, text in zip(parts[::2], parts[1::2]):
+        names = re.findall(r"\b[A-Z][A-Z_0-9]+\b", heading) or [""]
+        owners = [word for word in heading.split() if word not in (*names, "+")] or [""]
+        for key in (f"{owner}{' +' * ('+' in heading)} {name}".strip() for owner in owners for name in names):
+            texts[key] = [" ".join(part.split()) for part in text.split("\n\n") if part.strip()]
+    return texts

@@ -15,7 +15,7 @@ STEP_X, STEP_Y = 300, 130
 
 def definitions():
     """Every input a model may have, by name; its help is that of the stage it goes to."""
-    from lanewright.algorithms.road import METHOD_SETTING
+    from lanewright.algorithms.road import DetectBoundaries
     from lanewright.processing_provider.parameters import qgis_parameter
     from qgis.core import (
         QgsProcessing,
@@ -30,7 +30,7 @@ def definitions():
         QgsProcessingParameterFeatureSource("TRAJECTORY", "Trajectory", [source.TypeVector]),
         QgsProcessingParameterFeatureSource("REFERENCE_MARKINGS", "Reference markings", [source.TypeVectorPolygon]),
         QgsProcessingParameterFeatureSource("REFERENCE_LINES", "Reference lines", [source.TypeVectorLine]),
-        qgis_parameter(METHOD_SETTING),
+        qgis_parameter(DetectBoundaries().parameter("BOUNDARY_METHOD")),
         QgsProcessingParameterCrs("CRS", "CRS of the point clouds", optional=True),
     )
     return {definition.name(): definition for definition in made}

@@ -34,7 +34,7 @@ NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
 NAMED = {"title", "signed"}  # attributes of the core whose shortest texts are shown too
 UNSAID = {"_WORDS"}  # tables of the core that hold what other software says
 # Texts that stand in a class or a table and are translated where they are shown
-IN_A_CLASS = {"TITLE", "SUMMARY", "GROUP", "TAGS", "GROUPS"}
+IN_A_CLASS = {"TITLE", "GROUP", "GROUPS"}
 # Words of choices, which commands and models keep as they are written here
 NAMES = ("scanner_channel", "point_source_id", "1.7", "1.8", "dxf", "landxml", "A4", "A3", "A2", "A1", "A0", "1:100", "1:200", "1:250", "1:500",
          "1:1000", "1:2000", "1:2500", "1:5000", "en", "de")  # of fields, formats and languages: alike in every language
@@ -76,9 +76,10 @@ def table(path):
 
 
 def help_texts():
-    """The paragraphs of the help of the algorithms and their settings."""
+    """The paragraphs of the help of the algorithms and their parameters, and each search word."""
     parts = re.split(r"\n\n|^\[.+\]$|^#.*$", HELP.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    return [" ".join(part.split()) for part in parts if part.strip()]
+    paragraphs = [" ".join(part.split()) for part in parts if part.strip()]
+    return [text for part in paragraphs for text in (part[6:].split(", ") if part.startswith("Tags: ") else [part])]
 
 
 def texts_of(tree):

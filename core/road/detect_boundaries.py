@@ -85,10 +85,10 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
+    if settings.method == "profiles":
+        return {"profiles": detect_curbs(survey, settings.curbs, progress, ground)}
     kept_ground, ground = ground, ground or MeasuredGround(survey)
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
-        if settings.method == "profiles":
-            return {"profiles": detect_curbs(survey, settings.curbs, progress, True, decimation, None, ground)}
         part = progress.part(0.0, BOUNDARY.lattice_progress)
         # a later stage looks for edges of the pavement in the profiles of a ground that is kept
         lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
@@ -131,7 +131,8 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
     boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress)))
     if "both" in points_by_method:
-        boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, *(points_by_method[method] for method in METHODS), frame)
+        first, second = (points_by_method[method] for method in METHODS)
+        boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)
         lengths = boundaries.length_by_method = {method: _measured_length(points_by_method[method]) for method in METHODS}
         if any(lengths.values()):
             progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "

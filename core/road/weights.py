@@ -209,7 +209,6 @@ class _ScanlineWeights:
     min_lines_showing: int = 3   # scanlines that must show a candidate, itself included
     height_weight: float = 2.0   # m across that a metre of height counts as, so that low faces have enough vertices
     place_cell: float = 0.10   # m across, cells in which the surroundings of candidates are marked
-    places_per_batch: int = 8192   # places processed at a time; they fit into the cache of the processor
     # planes
     ransac_trials: int = 32   # few are enough: most samples of a class belong to its plane
     ransac_seed: int = 20   # any: the same result in every run
@@ -241,7 +240,6 @@ class _ScanlineWeights:
     # grid
     scanline_resolution: float = 0.02   # m across between cells, and along a scanline between resampled vertices
     max_ground_depth: float = 1.0   # m below the expected road, down to which points are ground
-    cells_at_once: int = 1 << 15   # that heights are computed for: they fit the processor's cache
     # mesh
     min_driven: float = 0.01   # m driven between scan lines: of a standing vehicle one line is used
     max_rib: float = 0.30   # m, or max_lines_ahead times the way driven during a turn where that is more

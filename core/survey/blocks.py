@@ -540,7 +540,8 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
     blocks, summary, sampled = _BlockReader(frame, choice, slots), _BlockSummary(), []
     with ParallelCloudReader(choice.layers) as readers:
         ranges = list(readers.ranges(files, block))
-        drop = blocks.rough_drop((points for number, *part in ranges for points in readers.points(files[number], *part, block)), progress)
+        drop = blocks.rough_drop((points for number, first, count in ranges for points in readers.points(files[number], first, count, block)),
+                                 progress)
     chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
     phase = Phase(_read_part, source, (), source.place, _join_parts)
     points = block if store.folder is None else READING.part_points   # threads read block by block

@@ -79,7 +79,7 @@ def _declared(stage):
 def _settings(declared, values):
     """(label, value, whether it is not the default) of what is decided in this step alone."""
     for spec in declared.parameters:
-        if isinstance(spec, SettingSpec) and spec not in (*SURVEY_SETTINGS, *EXECUTION_SETTINGS):
+        if isinstance(spec, SettingSpec) and spec.settings not in (SURVEY_SETTINGS[0].settings, EXECUTION_SETTINGS[0].settings):
             value = values.get(spec.name, spec.default)
             text = (tr("yes") if value else tr("no")) if isinstance(value, bool) else f"{value:g}" if isinstance(value, (int, float)) else str(value)
             yield spec.label, text, value != spec.default

@@ -70,7 +70,7 @@ def test_the_weight_of_a_rule_is_what_nothing_else_uses():
     assert weight(whole)[0] > 50 > weight(alone)[0] > 5
     # lines across gaps serve road edges too
     assert not any(name == "GapLine" for _, name in rule_parts(whole.rule))
-    assert any(name == "PieceInLine" for _, name in rule_parts(whole.rule))
+    assert any(name == "_is_curb" for _, name in rule_parts(whole.rule))
 
 
 def test_a_rule_is_found_in_its_room_when_its_file_is_another():

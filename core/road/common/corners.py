@@ -290,6 +290,39 @@ def _line_per_owner(owner, u, h, count):
     return np.where(n > 0, mh - slope * mu, np.nan), slope, scatter, n
 
 
+def road_before(low: np.ndarray, heights: np.ndarray, offsets: np.ndarray, spacing: float, rows: np.ndarray,
+                columns: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Line through the ground before some cells.
+
+    low : (P, C) m, heights of cells; heights, offsets : (N,) m, of those that hold ground, in order
+    spacing : m across per cell
+    rows, columns : (M,) the cells
+
+    Returns the height of the line at each cell, its slope, the scatter of the ground about it, and number of cells, each (M,)
+    """
+    reach, skip = int(round(CURBS.road_side_length / spacing)), int(round(CURBS.face_margin / spacing))
+    # of the occupied cells, those before a cell are a range
+    filled_before = np.zeros(low.size + 1, np.int32)
+    np.cumsum(np.isfinite(low), out=filled_before[1:])
+    start = rows * low.shape[1]
+    first, end = (filled_before.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
+    n = end - first
+    bounds = np.c_[first, end].ravel()
+    u, z = np.append(offsets, 0.0), np.append(heights, 0.0)
+
+    def window(terms):
+        return np.add.reduceat(terms, bounds)[::2] if len(bounds) else np.empty(0)
+
+    su, sz, suz, suu, szz = (window(terms) for terms in (u, z, u * z, u * u, z * z))
+    with np.errstate(all="ignore"):
+        mu, mz = su / n, sz / n
+        vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
+        slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
+        slope = np.clip(slope, -CURBS.max_road_slope, CURBS.max_road_slope)
+        rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
+        return mz + slope * (columns * spacing - mu), slope, rough, n
+
+
 # Levels of the ground on either side of every place of averaged profiles.
 
 

@@ -73,6 +73,15 @@ def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.nd
     return owner, index
 
 
+def nearest_distance(wanted: np.ndarray, keys: np.ndarray) -> np.ndarray:
+    """(M,) distance of each number from the nearest of (K,) keys, infinite where there is none."""
+    if not len(keys):
+        return np.full(len(wanted), np.inf)
+    keys = np.sort(keys)
+    right = np.searchsorted(keys, wanted)
+    return np.minimum(*(np.abs(keys[np.clip(k, 0, len(keys) - 1)] - wanted) for k in (right - 1, right)))
+
+
 @dataclass
 class PseudoScanLines:
     """Profiles of one side of the road; offsets count outward from the reference line.

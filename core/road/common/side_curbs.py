@@ -212,7 +212,7 @@ def points_of_side(source: Any, road: int, side: str, by_method: Sequence[tuple[
     by_method : SideSteps of every method, and their chains
     look : RoadLook of the side, None where nothing is known of the ground
     """
-    frame, sign, seen = source.frame, SIDE_SIGNS[side], [of_method.steps for of_method, _ in by_method]
+    frame, sign, seen = source.frame, SIDE_SIGNS[side], [of_method.steps for of_method, _ in by_method if of_method.steps is not None]
     first = np.cumsum([0, *map(len, seen)])   # number of the first step of each method among all of them
     steps = CurbSteps(*(np.concatenate([getattr(part, field.name) for part in seen]) for field in fields(CurbSteps)))
     chains = [replace(chain, steps=chain.steps + begin, method=method)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...common.arrays import members_of
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.open_survey import Survey
 from ...survey.store.records import Points
@@ -15,7 +16,7 @@ from .curb_limits import CurbSettings
 from .curb_points import CurbPoints, curb_points_at
 from .decimation import PointDecimation, limit_points_per_cell
 from .occlusion import OcclusionGrid
-from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, profiles_of_cells
+from .pseudo_scanlines import PseudoScanLines, cells_of_points, expand_ranges, nearest_distance, profiles_of_cells
 
 SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 
@@ -93,7 +94,7 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
         h = block.z - expected_height(survey, road, s)
         for side, sign in SIDE_SIGNS.items():
             u = sign * d
-            for number, rows in _rows_by_pass(block.pass_number, near & (u > origins[side]) & (u < CURBS.max_curb_offset)):
+            for number, rows in members_of(np.where(near & (u > origins[side]) & (u < CURBS.max_curb_offset), block.pass_number, np.int32(-1))):
                 inside, cell = cells_of_points(u, s, h, rows, section, cells[side], width, spacing, origins[side])
                 if points_per_cell is None:
                     selected = limit_points_per_cell(cell)
@@ -105,17 +106,6 @@ def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, in
         *points, cell = (np.concatenate(column) for column in zip(*ground[side, number]))
         lines = profiles_of_cells(points, cell, section, cells[side], width, spacing, settings.layer_jump, origins[side])
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
-
-
-def _rows_by_pass(numbers, mask):
-    """[(pass number, indices)] of the points of a mask."""
-    rows = np.flatnonzero(mask)
-    if not len(rows):
-        return []
-    if numbers.min() == numbers.max():
-        return [(int(numbers[0]), rows)]
-    numbers = numbers.take(rows)
-    return [(int(number), rows[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 
 def expected_height(survey: Any, road: int, s: np.ndarray) -> np.ndarray:
@@ -205,15 +195,12 @@ def hidden_beside(pieces: CurbPoints, main: Mapping[str, np.ndarray], beside: Ma
         later = np.c_[of_side.station, sign * of_side.offset, of_side.z - expected_height(survey, road, of_side.station)]
         main_curb = main[side] * (1, sign, 1, 1)
         measured = np.concatenate([later, main_curb[main_curb[:, 3] > 0, :3]])
-        order, reported = np.argsort(measured[:, 0], kind="stable"), np.r_[-np.inf, np.sort(main_curb[main_curb[:, 3] == 0, 0]), np.inf]
-        ends, rows = measured[order, 0], []
-        for row in hidden_points(measured, beside[side], OutermostTrack(survey.frame, road, sign)):
-            k = np.searchsorted(ends, row["s"])
-            position = np.searchsorted(reported, row["s"])
-            if (order[k - 1:k + 1] < len(later)).any() \
-                    and np.abs(reported[position - 1:position + 1] - row["s"]).min() > 0.5 * CURBS.hidden_point_spacing:
-                rows.append(row)
-        result.append(points_of_rows(survey, road, side, rows))
+        order, rows = np.argsort(measured[:, 0], kind="stable"), hidden_points(measured, beside[side], OutermostTrack(survey.frame, road, sign))
+        s = np.array([row["s"] for row in rows])
+        k = np.searchsorted(measured[order, 0], s)
+        new = ((order[k - 1] < len(later)) | (order[k] < len(later))) \
+            & (nearest_distance(s, main_curb[main_curb[:, 3] == 0, 0]) > 0.5 * CURBS.hidden_point_spacing)
+        result.append(points_of_rows(survey, road, side, [rows[number] for number in np.flatnonzero(new)]))
     return CurbPoints.join(result, pieces.crs)
 
 

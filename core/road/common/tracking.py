@@ -223,11 +223,13 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Calla
         check_cancelled()
         paths.lead_on(a, b)
     last = paths.path[int(np.argmax(paths.value))] if len(chains) else None
-    selected = []
+    selected: list[tuple[int, float, float]] = []
     while last:
-        selected.append(last[:3])
-        last = last[3]
-    return _continued(_merged(selected[::-1]), chains, steps)
+        chain, a, b, last = last
+        # adjacent intervals of one chain are one
+        goes_on = selected and selected[-1][:2] == (chain, b)
+        selected.append((chain, a, selected.pop()[2] if goes_on else b))
+    return _continued(selected[::-1], chains, steps)
 
 
 class _Paths:
@@ -405,17 +407,6 @@ def _chain_scatter(s, u):
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
 
-def _merged(path):
-    """Adjacent intervals of one chain joined."""
-    merged = []
-    for chain, a, b in path:
-        if merged and merged[-1][0] == chain and merged[-1][2] == a:
-            merged[-1] = (chain, merged[-1][1], b)
-        else:
-            merged.append((chain, a, b))
-    return merged
-
-
 # Short pieces of curb in line with the curb before and after them.
 #
 # A short piece of curb may be anything where it stands alone. Between two stretches of curb that were chosen already, a piece of their height that
@@ -438,20 +429,25 @@ def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequen
     pieces = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
     if not pieces:
         return []
-    chosen = _StepsByStation(steps[np.concatenate(pieces)])
-    of_methods = [(begin, _StepsByStation(steps[begin:end])) for begin, end in zip([0, *first], [*first, len(steps)])]
+    # by station, so that those between two stations are looked up
+    chosen, *of_methods = (rows[np.argsort(steps.s[rows], kind="stable")]
+                           for rows in (np.concatenate(pieces), *np.split(np.arange(len(steps)), first)))
+    stations, *stations_of_methods = (steps.s[rows] for rows in (chosen, *of_methods))
     for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
         if not CURBS.max_link_length < b - a <= CURBS.max_line_gap:
             continue
         check_cancelled()
-        before, after = (chosen.steps[chosen.rows(*ends)] for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
-        in_line = [(piece, begin) for begin, of_method in of_methods for piece in pieces_between(before, after, of_method, to_plan)]
+        before, after = (steps[chosen[stretch_of(stations, *ends)]]
+                         for ends in ((a - CURBS.line_fit_length, a + 1e-9), (b - 1e-9, b + CURBS.line_fit_length)))
+        gap = before.s.max() + 1e-6, after.s.min() - 1e-6
+        in_line = [piece for rows, s in zip(of_methods, stations_of_methods)
+                   for piece in pieces_between(before, after, steps, rows[stretch_of(s, *gap)], to_plan)]
         # of pieces beside each other the one nearest to the line
-        nearest: list[PieceInLine] = []
-        for piece, begin in sorted(in_line, key=lambda found_piece: found_piece[0].off):
-            if all(piece.end < other.start or piece.start > other.end for other in nearest):
+        nearest: list[np.ndarray] = []
+        for _, piece in sorted(in_line, key=lambda off_and_piece: off_and_piece[0]):
+            if all(steps.s[piece[-1]] < steps.s[other[0]] or steps.s[piece[0]] > steps.s[other[-1]] for other in nearest):
                 nearest.append(piece)
-                pieces.append(begin + piece.steps)
+        pieces += nearest
     return sorted(pieces, key=lambda members: float(steps.s[members[0]]))
 
 
@@ -459,44 +455,17 @@ def _between(steps, members, start, end):
     return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
 
 
-class _StepsByStation:
-    """CurbSteps of one side, of which those between two stations are looked up."""
-
-    def __init__(self, steps: CurbSteps):
-        self.steps = steps
-        self._order = np.argsort(steps.s, kind="stable")
-        self._station = steps.s[self._order]
-
-    def rows(self, start: float, end: float) -> np.ndarray:
-        """(K,) indices, by station, of the steps between two stations, m."""
-        return self._order[stretch_of(self._station, start, end)]
-
-
-@dataclass(frozen=True)
-class PieceInLine:
-    """A piece of curb on the line across a gap.
-
-    steps : (K,) indices of its steps, by station
-    off : m, greatest distance from the line
-    start, end : m, first and last station
-    """
-
-    steps: np.ndarray
-    off: float
-    start: float
-    end: float
-
-
-def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
-                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[PieceInLine]:
+def pieces_between(before: CurbSteps, after: CurbSteps, steps: CurbSteps, rows: np.ndarray,
+                   to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[tuple[float, np.ndarray]]:
     """The pieces of curb on the line between two runs of curb.
 
     before, after : CurbSteps on both sides of the gap, or any rows with `s`, `u`, `h` and `height`; not empty
-    others : the steps that may lie between
+    steps, rows : CurbSteps, and (N,) indices, by station, of those that lie between
     to_plan : function, stations and outward offsets in m -> x and y in m
+
+    Returns m, greatest distance from the line, and (K,) indices of the steps, by station, of each piece
     """
     a, b = before.s.max(), after.s.min()
-    rows, steps = others.rows(a + 1e-6, b - 1e-6), others.steps
     if len(rows) < CURBS.min_piece_steps:
         return []
     line = GapLine(np.array(to_plan(before.s, before.u)), np.array(to_plan(after.s, after.u)))
@@ -514,7 +483,7 @@ def pieces_between(before: CurbSteps, after: CurbSteps, others: _StepsByStation,
     near = near[np.r_[True, np.diff(steps.profile[rows[near]]) > 0]]
     parted = (np.diff(s[near]) > CURBS.max_link_length) | (np.abs(np.diff(off[near])) > CURBS.link_tolerance)
     runs = np.split(near, np.flatnonzero(parted) + 1)
-    return [PieceInLine(rows[run], float(np.abs(off[run]).max()), float(s[run[0]]), float(s[run[-1]])) for run in runs
+    return [(float(np.abs(off[run]).max()), rows[run]) for run in runs
             if len(run) >= CURBS.min_piece_steps and np.ptp(s[run]) >= CURBS.min_piece_length
             and _is_curb(steps[rows[run]], off[run], across[run].min(), height0 + share[run] * (height1 - height0))]
 

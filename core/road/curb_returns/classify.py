@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -26,7 +26,6 @@ class CurbReturn:
     """One line of curb away from the road's own.
 
     sigma : (N,) m, one sigma across that the steps share, of a line that was fitted as a whole; None of steps that were seen one by one
-    falls : (N,) m uphill of each step at which the ground is down again, NaN where it stays up; empty where that does not matter
     """
 
     steps: PlanSteps   # N PlanSteps in order, uphill on the right
@@ -36,7 +35,6 @@ class CurbReturn:
     kind: str   # "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
     closed: bool = False   # does it go all around an island?
     sigma: np.ndarray | None = None
-    falls: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:
@@ -128,7 +126,7 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
     behind = np.any([limit.behind(s, d) for limit in limits.values()], axis=0)
     side = _side(s, d, passes)
     if np.mean(np.isfinite(falls) & ~behind) >= RETURN.min_island_share:
-        return CurbReturn(curb, s, d, side, "island", closed, falls=falls)
+        return CurbReturn(curb, s, d, side, "island", closed)
     if _may_be_side_street(curb, s, line, behind, linked):
         straight = _straight_part(curb)
         return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")

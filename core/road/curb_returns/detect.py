@@ -131,7 +131,7 @@ class _PlanSearch:
         return cls({side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()},
                    KnownPlaces(places_along(line, main, CURBS.max_joined_gap)),
                    PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor),
-                   FollowedEnds.of(lines, np.full(len(lines), np.nan)), behind)
+                   FollowedEnds.of(lines), behind)
 
 
 def _steps_in_plan(decimation, searches, settings, progress=Progress()):

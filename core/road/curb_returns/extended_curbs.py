@@ -232,11 +232,9 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         return list(curbs)
     line, free = decimation.survey.frame.road(road), [curb for curb in curbs if curb.kind in LED_KINDS and not curb.closed]
     lines = [coordinates for _, coordinates in runs] + [(curb.steps.x, curb.steps.y, curb.steps.h) for curb in free]
-    ends, owner = FollowedEnds.with_lines(lines)
+    ends = FollowedEnds.of(lines)
     met = known.and_steps([curb.steps for curb in curbs])
-    open_ends = np.flatnonzero(~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty,
-                                           0.5 * RETURN.leaving_length))
-    ends, owner = ends[open_ends], owner[open_ends]
+    ends = ends[~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty, 0.5 * RETURN.leaving_length)]
     phase = phase_along(_led_steps_of_section, decimation, (ends, settings), settings.profile_width, _join_led)
     continuations: list[CurbReturn] = []
     main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
@@ -244,7 +242,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections]))):
         # inside a tight bend a place may have no station
         line_steps = _until_met(line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])], met)
-        k, at_head = owner[number], ends.uphill[number] < 0
+        k, at_head = ends.line[number], ends.uphill[number] < 0
         if len(line_steps) < RETURN.min_return_steps:
             continue
         # from the other end of a gap only the rest is continued
@@ -337,31 +335,26 @@ class FollowedEnds(Rows):
     ty: np.ndarray
     uphill: np.ndarray   # (K,) 1 where uphill is on the right of that vector, else -1
     height: np.ndarray   # (K,) m, of the step; NaN where it is not known
+    line: np.ndarray   # (K,) int, number of the line
 
     @classmethod
-    def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: np.ndarray) -> FollowedEnds:
-        """Both ends of lines (x, y, h), uphill on the right, that are long enough for a direction.
+    def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: Sequence[float] | None = None) -> FollowedEnds:
+        """Both ends of lines, uphill on the right, that are long enough for a direction.
 
-        lines : list of K (x, y, h), each (N,) m
-        heights : (K,) m, of the steps
+        lines : list of L (x, y, h), each (N,) m
+        heights : (L,) m, of the steps; None where they are not known
         """
-        ends, owner = cls.with_lines(lines)
-        return replace(ends, height=np.asarray(heights, float)[owner])
-
-    @classmethod
-    def with_lines(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> tuple[FollowedEnds, np.ndarray]:
-        """The same ends, of unknown height, and (2 K,) number of the line to which each belongs."""
         long = np.flatnonzero([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= RETURN.line_direction_length for x, y, _ in lines])
-        ends = LineEnds.of([lines[k] for k in long], RETURN.line_direction_length)
-        tips = np.concatenate([ends.tails, ends.heads])
-        uphill = np.repeat([1.0, -1.0], len(ends.tails))
-        return cls(tips[:, 0], tips[:, 1], tips[:, 2], tips[:, 3], tips[:, 4], uphill, np.full(len(tips), np.nan)), np.tile(long, 2)
+        ends, line = LineEnds.of([lines[k] for k in long], RETURN.line_direction_length), np.tile(long, 2)
+        x, y, h, tx, ty = np.concatenate([ends.tails, ends.heads]).T
+        height = np.full(len(line), np.nan) if heights is None else np.asarray(heights, float)[line]
+        return cls(x, y, h, tx, ty, np.repeat([1.0, -1.0], len(long)), height, line)
 
     @classmethod
     def of_chains(cls, chains: Sequence[PlanStepChain], steps: PlanSteps) -> FollowedEnds:
         """The ends of open chains of steps."""
         lines = [steps[chain.steps] for chain in chains if not chain.closed and len(chain.steps) > 2]
-        return cls.of([(line.x, line.y, line.h) for line in lines], np.array([np.median(line.height) for line in lines]))
+        return cls.of([(line.x, line.y, line.h) for line in lines], [float(np.median(line.height)) for line in lines])
 
 
 def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, max_height: float, least_slope: float,
@@ -399,7 +392,7 @@ def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, 
         size = np.maximum(np.hypot(dx, dy), 1e-9)
         x, y, h, tx, ty = (np.where(good, new, old) for new, old in (
             (steps.x, ends.x), (steps.y, ends.y), (steps.h, ends.h), (dx / size, ends.tx), (dy / size, ends.ty)))
-        ends = FollowedEnds(x, y, h, tx, ty, ends.uphill, np.where(good & np.isnan(ends.height), steps.height, ends.height))
+        ends = replace(ends, x=x, y=y, h=h, tx=tx, ty=ty, height=np.where(good & np.isnan(ends.height), steps.height, ends.height))
         distance, left = np.where(good, RETURN.following_step, distance + RETURN.following_step), left - RETURN.following_step
         left[distance > RETURN.max_plan_link] = 0.0
     return PlanSteps.join(result) if result else PlanSteps.none()

@@ -167,15 +167,10 @@ class CurbLines:
         parts = [np.c_[x[:-1], y[:-1], np.diff(x), np.diff(y)] for x, y in self.lines if len(x) > 1]
         return np.concatenate([np.empty((0, 4)), *parts])
 
-    @cached_property
-    def _boxes(self):
-        x, y, dx, dy = self.segments.T
-        return shapely.STRtree(shapely.box(np.minimum(x, x + dx), np.minimum(y, y + dy), np.maximum(x, x + dx), np.maximum(y, y + dy)))
-
     def segments_about(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
-        """(K, 4) those segments that may come within a distance of (N,) places, in their order."""
-        around = shapely.box(x.min() - distance, y.min() - distance, x.max() + distance, y.max() + distance)
-        return self.segments[np.sort(self._boxes.query(around))]
+        """(K, 4) those segments that begin within a distance of the box about (N,) places, in their order."""
+        inside = [(at >= places.min() - distance) & (at <= places.max() + distance) for at, places in zip(self.segments.T, (x, y))]
+        return self.segments[inside[0] & inside[1]]
 
     @cached_property
     def ends(self) -> np.ndarray:

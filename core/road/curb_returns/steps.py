@@ -74,7 +74,7 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
     proved, candidate, parts = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(RETURN.measuring_rounds):
-        corners, steps = _seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
+        corners, steps = steps_of_points(points_about(raster, points, x, y, nx, ny, half), x, y, nx, ny, raster.noise, min_height, max_height)
         # a step of another direction or place is measured again, across its own direction and from its own place
         settled = corners["good"] & ((np.abs(corners["skew"]) <= CURBS.remeasure_skew) & (np.abs(corners["u"]) <= RETURN.remeasure_offset)
                                      | (turn == RETURN.measuring_rounds - 1))
@@ -87,24 +87,18 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     return PlanSteps.join(parts), proved
 
 
-def _seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
-            min_height: float, max_height: float) -> tuple[dict[str, np.ndarray], PlanSteps]:
+def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, noise: float,
+                    min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
     """What the points about each place show across a direction.
 
-    points : of it, result of `by_cell`
+    about : result of `points_about`
     x, y : (M,) local m
     nx, ny : (M,) unit vectors uphill
-    half : m either way along the curb of the points that are used
-    min_height, max_height : m, of a step
+    noise, min_height, max_height : m, of the scanner, and of a step
+    graded : as of StepPatches
 
     Returns the result of `StepPatches.corners`, and M PlanSteps, of which those are steps that are `good`
     """
-    return steps_of_points(points_about(raster, points, x, y, nx, ny, half), x, y, nx, ny, raster.noise, min_height, max_height)
-
-
-def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, noise: float,
-                    min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
-    """`_seen_at` of points that are known: `about` is the result of `points_about`; `noise` in m; `graded` as of StepPatches."""
     owner, u, v, h = about
     corners = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
     # the tangent is the uphill direction turned to the left
@@ -141,7 +135,12 @@ def _rotated(nx, ny, skew):
 
 def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
                  half: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Ground points near each place: owner, m uphill, m along, height; the parameters are those of `_seen_at`."""
+    """Ground points near each place: owner, m uphill, m along, height.
+
+    points : of the raster, result of `by_cell`
+    x, y, nx, ny : as of `steps_of_points`
+    half : m either way along the curb of the points that are used
+    """
     px, py, ph, starts = points
     rows, columns = raster.low.shape
     reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / RETURN.plan_cell))

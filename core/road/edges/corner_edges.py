@@ -226,41 +226,33 @@ def _is_corner(tail, head):
     gap = float(np.hypot(*chord[:2]))
     if not EDGE.min_dropped_gap <= gap <= EDGE.max_dropped_gap or abs(chord[2]) > EDGE.max_end_step + EDGE.max_end_grade * gap:
         return False
-    first, last = _turns(tail, head)
-    if min(first, last) <= 0.0 or not EDGE.min_arc_turn <= first + last <= EDGE.max_arc_turn:
+    met = _tangents(tail, head)
+    if met is None:
         return False
-    radius = _radius(gap, first, last)
     # seen from its own piece a head bends the other way
     for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
-        if bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= radius * bend / length <= EDGE.max_radius_ratio:
+        if bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio:
             return True
     return False
 
 
-def _turns(tail, head):
-    """Radians to the right, from the direction of a tail to the chord of the gap, and from the chord to the direction of the head."""
+def _tangents(tail, head):
+    """How the directions of two ends meet: radians to the right from tail to head, m from both to the place where they meet, and m of radius.
+
+    The radius is that of the largest arc in the gap that touches both directions. Nothing where they do not turn to the right, or too little or much.
+    """
     chord = (head.place - tail.place)[:2]
-    return -_angle(tail.out, chord), -_angle(chord, -head.out)
-
-
-def _tangents(gap, first, last):
-    """m from both ends of a gap to the place where their directions meet, which are off its chord by these angles, radians."""
-    turn = np.sin(first + last)
-    return gap * np.sin(last) / turn, gap * np.sin(first) / turn
-
-
-def _radius(gap, first, last):
-    """m, of the largest arc in a gap that touches the directions of both ends, which are off its chord by these angles, radians."""
-    return min(_tangents(gap, first, last)) / np.tan(0.5 * (first + last))
+    first, last = -_angle(tail.out, chord), -_angle(chord, -head.out)
+    turn, gap = first + last, float(np.hypot(*chord))
+    if min(first, last) <= 0.0 or not EDGE.min_arc_turn <= turn <= EDGE.max_arc_turn:
+        return None
+    before, behind = gap * np.sin(last) / np.sin(turn), gap * np.sin(first) / np.sin(turn)
+    return turn, before, behind, min(before, behind) / np.tan(0.5 * turn)
 
 
 def _arc(tail, head, frame, number):
     """The piece of edge from a tail to a head: straight on as far as the one tangent is longer than the other, and the arc that both touch."""
-    chord = head.place - tail.place
-    gap = float(np.hypot(*chord[:2]))
-    first, last = _turns(tail, head)
-    before, behind = _tangents(gap, first, last)
-    radius, turn = _radius(gap, first, last), first + last
+    turn, before, behind, radius = _tangents(tail, head)
     straight, bend = max(before - behind, 0.0), radius * turn
     length = straight + bend + max(behind - before, 0.0)
     along = np.linspace(0.0, length, int(np.ceil(length / EDGE.arc_vertex_spacing)) + 1)
@@ -270,7 +262,7 @@ def _arc(tail, head, frame, number):
     after_arc = np.maximum(along - straight - bend, 0.0)
     ahead, sideways = ahead + after_arc * np.cos(turn), sideways + after_arc * np.sin(turn)
     plan = tail.place[:2] + ahead[:, None] * tail.out + sideways[:, None] * np.array([tail.out[1], -tail.out[0]])
-    vertices = np.round(np.c_[plan, tail.place[2] + along / length * chord[2]], COORDINATE_DECIMALS)
+    vertices = np.round(np.c_[plan, tail.place[2] + along / length * (head.place - tail.place)[2]], COORDINATE_DECIMALS)
     vertices[0], vertices[-1] = tail.place, head.place
     piece = tail.piece
     s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -186,6 +187,23 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
+def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, changes: np.ndarray) -> Iterator[tuple[int, np.ndarray, dict[str, float]]]:
+    """The stretches of a line, each of one kind.
+
+    points, t, residual : as of EdgeCurve, N points
+    changes : (N - 2,) bool, does the kind change at each point but the first and the last?
+
+    Yields number of the first point, m of chord length at the vertices, and attributes of the EdgePiece: station, end, height and rmse
+    """
+    bounds = np.r_[0, np.flatnonzero(changes) + 1, len(points) - 1]
+    for i, j in zip(bounds[:-1], bounds[1:]):
+        check_cancelled()
+        rows, count = points[i:j + 1], max(int(np.ceil((t[j] - t[i]) / EDGE.edge_vertex_spacing)), 1) + 1
+        yield int(i), np.linspace(t[i], t[j], count), dict(station=float(rows["s"][0]), end=float(rows["s"][-1]),
+                                                           height=float(np.median(rows["height"])),
+                                                           rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))))
+
+
 def _draw(pieces, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged, lowered = piece
@@ -193,18 +211,11 @@ def _draw(pieces, frame, road, side, piece, number):
     with_bridges, places, longest = _with_bridges(points, np.diff(points["s"]) > CURBS.max_joined_gap, frame, road)
     curve = EdgeCurve(with_bridges, longest, places[measured])
     t, residual = curve.t[places], curve.residual[places]
-    changes = np.flatnonzero(np.diff(bridged) | np.diff(lowered)) + 1
-    bounds = np.r_[0, changes, len(points) - 1]
-    for i, j in zip(bounds[:-1], bounds[1:]):
-        check_cancelled()
-        a, b = t[i], t[j]
-        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
-        vertices, rows = curve.at(along), points[i:j + 1]
+    for i, along, known in stretches_of(points, t, residual, np.diff(bridged) | np.diff(lowered)):
         passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
         sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
-        pieces.append(EdgePiece(vertices, road, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
-                               float(rows["s"][-1]), height=float(np.median(rows["height"])), rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))),
-                               # a bridge is one guess
+        # a bridge is one guess
+        pieces.append(EdgePiece(curve.at(along), road, side, "bridged" if bridged[i] else "measured", number, **known,
                                what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
     return float(points["s"][0]), float(points["s"][-1])
 

@@ -28,31 +28,27 @@ from .steps import find_averaged_steps, find_steps
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 include_returns: bool = True, decimation: PointDecimation | None = None,
-                 beside: dict[int, dict[str, OcclusionGrid]] | None = None, ground: MeasuredGround | None = None) -> CurbPoints:
-    """Bottom corners of the curb on each side of every road, one per block.
+                 ground: MeasuredGround | None = None) -> CurbPoints:
+    """Bottom corners of the curb on each side of every road, one per block, and those of corners, side streets and islands.
 
-    include_returns : are corners, side streets and islands looked for too?
-    decimation : PointDecimation of the survey, where it is used again
-    beside : is given what was seen beside each road: number of the road -> side -> OcclusionGrid
     ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
     Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of status `bridged` lie on the line
     across a lowered curb, and those of status `occluded` where the curb is expected and something hides it.
     """
-    if decimation is None:
-        with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own_decimation:
-            return detect_curbs(survey, settings, progress, include_returns, own_decimation, beside, ground)
     ground = ground or MeasuredGround(survey)
-    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)},
-                           progress.part(0.0, PROFILE.main_curb_progress))["profiles"]
-    beside = {} if beside is None else beside
-    beside.update(grids_beside(steps))
-    main = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground))["profiles"]
-    tell_points(main, progress)
-    if not include_returns:
-        return main
-    return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
+    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
+        main, beside = main_curbs(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress), ground)
+        return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
+
+
+def main_curbs(decimation: PointDecimation, settings: CurbSettings, progress: Progress = Progress(),
+               ground: MeasuredGround | None = None) -> tuple[CurbPoints, dict[int, dict[str, OcclusionGrid]]]:
+    """The points of the roads' own curbs alone, and what was seen beside each road: its number -> side -> OcclusionGrid."""
+    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, progress)["profiles"]
+    points = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground or MeasuredGround(decimation.survey)))["profiles"]
+    tell_points(points, progress)
+    return points, grids_beside(steps)
 
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from ...common.arrays import best_within
-from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, measure_corners
-from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, seen_from
+from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, measure_corners, road_before
+from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, nearest_distance, seen_from
 from ..weights import CURBS, PROFILE
 
 
@@ -41,7 +41,7 @@ def _rising_cells(lines, min_height, max_height):
     with np.errstate(invalid="ignore"):
         rising = np.flatnonzero((own_high > before) & (top - before > 0.4 * min_height - 1e-9))
     indices, row, column, own_high, top, before = (v.take(rising) for v in (indices, row, column, own_high, top, before))
-    base, slope, rough, count = _road_before(low, own_low, offset, spacing, row, column)
+    base, slope, rough, count = road_before(low, own_low, offset, spacing, row, column)
     with np.errstate(invalid="ignore"):
         step = top - base
         middle = base + 0.5 * step
@@ -67,34 +67,6 @@ def _stays_up(low, base, slope, rows, columns, min_height, spacing):
         raised = rise > 0.4 * min_height
     count = raised.sum(1)
     return (count < PROFILE.min_raised_cells) | (np.where(raised, rise, 0.0).sum(1) >= PROFILE.min_raised_height_share * min_height * count)
-
-
-def _road_before(low, heights, offsets, spacing, rows, columns):
-    """Line through the principal points before some cells: its height at each cell, slope, scatter, and number of points, each (M,).
-
-    low : (P, C) principal points; heights, offsets : (N,) m, of the occupied cells, in order
-    """
-    reach, skip = int(round(CURBS.road_side_length / spacing)), int(round(CURBS.face_margin / spacing))
-    # of the occupied cells, those before a cell are a range
-    filled_before = np.zeros(low.size + 1, np.int32)
-    np.cumsum(np.isfinite(low), out=filled_before[1:])
-    start = rows * low.shape[1]
-    first, end = (filled_before.take(start + np.maximum(columns + 1 - back, 0)).astype(np.intp) for back in (reach + skip, skip))
-    n = end - first
-    bounds = np.c_[first, end].ravel()
-    u, z = np.append(offsets, 0.0), np.append(heights, 0.0)
-
-    def window(terms):
-        return np.add.reduceat(terms, bounds)[::2] if len(bounds) else np.empty(0)
-
-    su, sz, suz, suu, szz = (window(terms) for terms in (u, z, u * z, u * u, z * z))
-    with np.errstate(all="ignore"):
-        mu, mz = su / n, sz / n
-        vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-        slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
-        slope = np.clip(slope, -CURBS.max_road_slope, CURBS.max_road_slope)
-        rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
-        return mz + slope * (columns * spacing - mu), slope, rough, n
 
 
 def _max_ahead(values, span):
@@ -143,14 +115,7 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
 
 def _beside(steps, others):
     """(M,) bool: does one of the others lie within PROFILE.same_step_distance metres across in the same profile?"""
-    if not len(others):
-        return np.zeros(len(steps), bool)
-    order = np.lexsort((others.u, others.profile))
-    key = others.profile[order] * 1000.0 + others.u[order]
-    wanted = steps.profile * 1000.0 + steps.u
-    right = np.searchsorted(key, wanted)
-    return np.minimum(np.abs(key[np.clip(right, 0, len(key) - 1)] - wanted),
-                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < PROFILE.same_step_distance
+    return nearest_distance(steps.profile * 1000.0 + steps.u, others.profile * 1000.0 + others.u) < PROFILE.same_step_distance
 
 
 def _steps_in(lines, min_height, max_height, behind=(True,)):

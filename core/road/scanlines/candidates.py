@@ -19,8 +19,9 @@ from ...common.arrays import Rows, best_within
 from ...common.errors import RoadExtractionError
 from ...common.setting import check_limits, setting
 from ...lazy import cv2
+from ..common.corners import road_before
 from ..common.curb_limits import CurbLimits
-from ..weights import CURBS, SCANLINE
+from ..weights import SCANLINE
 from .grid import LINE_SEPARATION, HeightGrid, Scanlines, row_of_lines
 
 
@@ -85,7 +86,9 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
     row, cell, before, top = _rising(low, span, SCANLINE.min_rise_share * settings.limits.least_height)
     outside = side.offset(cell) > np.asarray(nearest)[row]
     row, cell, before, top = (values[outside] for values in (row, cell, before, top))
-    base, slope, rough, count = _road_before(low, row, cell)
+    filled = np.nonzero(np.isfinite(low))
+    base, slope, rough, count = road_before(low, low[filled].astype(float), filled[1] * SCANLINE.scanline_resolution, SCANLINE.scanline_resolution,
+                                            row, cell)
     step = top - base
     middle = base + 0.5 * step
     rising = np.flatnonzero((count >= SCANLINE.min_road_cells) & (step >= SCANLINE.min_rise_share * settings.limits.least_height)
@@ -120,30 +123,6 @@ def _rising(low, span, least):
     indices = np.flatnonzero(rising)
     row = indices // low.shape[1]
     return row, indices - row * low.shape[1], before.reshape(-1)[indices], top.reshape(-1)[indices]
-
-
-def _road_before(low, row, cell):
-    """Line through the ground before some cells: its height there, slope, standard deviation, and count of cells."""
-    reach, skip = int(round(CURBS.road_side_length / SCANLINE.scanline_resolution)), int(round(CURBS.face_margin / SCANLINE.scanline_resolution))
-    back = np.arange(-reach - skip + 1, -skip + 1)
-    padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
-    indices = row * padded.shape[1] + cell + reach + skip
-    powers = np.stack([np.ones(reach), back * SCANLINE.scanline_resolution, (back * SCANLINE.scanline_resolution) ** 2], axis=1).astype(np.float32)
-    lines = []
-    for first in range(0, len(indices), SCANLINE.places_per_batch):
-        heights = padded.reshape(-1).take(indices[first:first + SCANLINE.places_per_batch, None] + back)
-        measured = np.isfinite(heights)
-        np.copyto(heights, 0.0, where=~measured)
-        n, su, suu = (measured.astype(np.float32) @ powers).T
-        sz, suz, _ = (heights @ powers).T
-        szz = np.einsum("ij,ij->i", heights, heights)
-        with np.errstate(all="ignore"):
-            mu, mz = su / n, sz / n
-            vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -CURBS.max_road_slope, CURBS.max_road_slope)
-            rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
-            lines.append((mz - slope * mu, slope, rough, n))
-    return (np.concatenate(values) for values in zip(*lines)) if lines else (np.empty(0, np.float32),) * 4
 
 
 def gap_fill_rows(interval: float) -> int:

@@ -18,10 +18,10 @@ import numpy as np
 
 from ...common.arrays import Rows
 from ..common.corners import CurbSteps
-from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION, expand_ranges
+from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION, expand_ranges, nearest_distance
 from ..weights import CURBS, SCANLINE
 from .candidates import CurbCandidates, ScanlineBoundarySettings, ScanlineSamples
-from .grid import LINE_SEPARATION, nearest_distance
+from .grid import LINE_SEPARATION
 
 TRUNCATED_SIGMA_FACTOR = 1.35   # derived: sigma of a normal distribution over that of its part within SCANLINE.inlier_sigmas
 

@@ -28,17 +28,18 @@ from ...survey.weights import READING
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
+from ..common.pseudo_scanlines import nearest_distance
 from ..common.side_curbs import Search, Section, SideSteps, curbs_along, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height
 from ..common.tracking import without_outliers
-from ..edges.fit import EdgeCurve, point_table
+from ..edges.fit import EdgeCurve, point_table, stretches_of
 from ..edges.road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
-from .grid import LINE_SEPARATION, Scanlines, height_grid, nearest_distance
+from .grid import LINE_SEPARATION, Scanlines, height_grid
 from .section_planes import ScanlineSettings, scanline_runs
 
 
@@ -67,7 +68,7 @@ def tell_corners(points: CurbPoints, progress: Progress) -> None:
 
 def planes_of(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings, block_length: float) -> Search:
     """The planes of all roads. `block_length` : as of `curbs_from_scanlines`."""
-    return Search.of({road: source.span(road) for road in source.roads()}, source.frame, source.interval, settings.limits, block_length, beyond=1)
+    return Search.of(source.spans(), source.frame, source.interval, settings.limits, block_length, beyond=1)
 
 
 def corners_of_section(source: SurveyScanlines | LayerScanlines, item: Section,
@@ -190,16 +191,9 @@ def _pieces(points, hidden, max_gap):
 def _draw(pieces, points, status, passes, **fields):
     """Add the pieces of one line."""
     curve = EdgeCurve(points)
-    bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
-    for i, j in zip(bounds[:-1], bounds[1:]):
-        a, b = curve.t[i], curve.t[j]
-        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE.edge_vertex_spacing)), 1) + 1)
-        vertices, rows = curve.at(along), points[i:j + 1]
-        pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
-                                height=float(np.median(rows["height"])),
-                                rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                                sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes)),
-                                **fields))
+    for i, along, known in stretches_of(points, curve.t, curve.residual, status[1:] != status[:-1]):
+        sigma = edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes))
+        pieces.append(EdgePiece(curve.at(along), status=str(status[i]), sigma=sigma, **known, **fields))
 
 
 # Sources of normalized scanlines: sections of a survey, computed on demand, or a layer.
@@ -237,13 +231,9 @@ class SurveyScanlines:
                                                                     sensor_height=self.sensor_height, lattice=self.lattice,
                                                                     decimation=decimation))
 
-    def roads(self) -> list[int]:
-        """Numbers of the roads."""
-        return self.survey.store.roads()
-
-    def span(self, road: int) -> tuple[float, float]:
-        """Stations at which a road begins and ends, m."""
-        return self.survey.store.span(road)
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """{number of a road: stations at which it begins and ends, m}"""
+        return {road: self.survey.store.span(road) for road in self.survey.store.roads()}
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """Expected local z of the road at (N,) stations, (N,) m."""
@@ -294,14 +284,9 @@ class LayerScanlines:
         typical = float(np.median(list(heights.values()))) if heights else READING.default_sensor_height
         return {p.number: heights.get(p.number, typical) for p in self.frame.passes}
 
-    def roads(self) -> list[int]:
-        """Numbers of the roads."""
-        return list(self.lines)
-
-    def span(self, road: int) -> tuple[float, float]:
-        """Stations at which a road begins and ends, m."""
-        stations = self.lines[road].station
-        return float(stations[0]), float(stations[-1])
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """{number of a road: stations at which it begins and ends, m}"""
+        return {road: (float(lines.station[0]), float(lines.station[-1])) for road, lines in self.lines.items()}
 
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """Expected local z of the road at (N,) stations, (N,) m."""

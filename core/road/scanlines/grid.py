@@ -107,28 +107,16 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     base += begin
     base *= slope
     np.subtract(heights.take(segment), base, out=base)
-    flat = low.reshape(-1)
-    cuts = np.searchsorted(end, np.arange(SCANLINE.cells_at_once, end[-1:].sum() + SCANLINE.cells_at_once, SCANLINE.cells_at_once)) + 1
-    cuts = np.unique(np.r_[0, np.minimum(cuts, len(end))]).tolist()
-    for first, last in zip(cuts[:-1], cuts[1:]):
-        part = slice(first, last)
-        _lower_to(flat, *_heights_of_segments(end[part], int(end[first] - number[first]), ahead[part], slope[part], base[part]))
-    with np.errstate(invalid="ignore"):
-        flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
-    return grid
-
-
-def _heights_of_segments(end, before, ahead, slope, base):
-    """Indices in the grid, and heights, of the cells that some segments cross; those of a segment end before cell `end`, of `before` at first."""
-    owner = np.zeros(end[-1] - before, np.int32)
-    owner[end[:-1] - before] = 1
-    np.cumsum(owner, out=owner)
-    index = ahead.take(owner)
-    index += np.arange(before, end[-1])
+    owner = np.repeat(np.arange(len(segment)), number)
+    index = ahead.take(owner) + np.arange(len(owner))
     height = slope.take(owner)
     height *= index
     height += base.take(owner)
-    return index, height.astype(np.float32)
+    flat = low.reshape(-1)
+    _lower_to(flat, index, height.astype(np.float32))
+    with np.errstate(invalid="ignore"):
+        flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
+    return grid
 
 
 def _lower_to(flat, place, height):
@@ -151,15 +139,6 @@ def row_of_lines(lines: Scanlines, rows: tuple[int, int], interval: float) -> np
     Returns (L,) int, negative or too large outside the grid
     """
     return np.rint(lines.station / interval).astype(np.int64) - rows[0]
-
-
-def nearest_distance(wanted: np.ndarray, keys: np.ndarray) -> np.ndarray:
-    """(M,) distance of each number from the nearest of (K,) keys, infinite where there is none."""
-    if not len(keys):
-        return np.full(len(wanted), np.inf)
-    keys = np.sort(keys)
-    right = np.searchsorted(keys, wanted)
-    return np.minimum(*(np.abs(keys[np.clip(k, 0, len(keys) - 1)] - wanted) for k in (right - 1, right)))
 
 
 # Normalized scanlines: sections of the measured surface by planes across the road, as polylines in the road frame.

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.ndimage import median_filter
 
+from ...common.arrays import mask_runs
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
@@ -237,9 +238,7 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
     Returns (R,) m, `limit` or farther
     """
     result = limit.copy()
-    starts = np.flatnonzero(closed & ~np.r_[False, closed[:-1]])
-    ends = np.flatnonzero(closed & ~np.r_[closed[1:], False]) + 1
-    for first, end in zip(starts, ends):
+    for first, end in mask_runs(closed):
         rows = slice(first, end)
         if (end - first) * SURFACE.row_length < SURFACE.min_mouth_width and not _goes_on_wider(limit, first, end):
             continue

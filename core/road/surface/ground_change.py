@@ -157,45 +157,27 @@ def _lines(at, values, known):
     return mean - slope * middle, slope
 
 
-def other_ground_begins(brightness: np.ndarray, stations: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:
+def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:
     """Where brighter ground begins between the vehicle and the limit of the road, and goes on as far as that.
 
     A narrower strip along the limit than `pavement_limits` searches is left to it.
 
     brightness : (P, K) counts, profiles of cells outward
-    stations : (P,) m, ascending
     track : (P,) cells, not necessarily whole, of the vehicle's track
     limit : (P,) cells, not necessarily whole, at which the ground changes
 
     Returns (P,) cells; NaN where there is no such ground
     """
     begins, step, step_at_limit = by_rows(lambda some: _brighter_from(brightness[some], track[some], limit[some]), len(brightness)).T
-    brighter = begins >= 0
-    holds = np.flatnonzero(brighter & (step_at_limit >= SURFACE.lasting_share * step))
+    brighter, lasts = begins >= 0, step_at_limit >= SURFACE.lasting_share * step
+    holds = np.flatnonzero(brighter & lasts)
     if not len(holds):
         return np.full(len(begins), np.nan)
     # a single profile tells little of how far a strip goes on, which has dark patches and fades with range, but where it begins
     course = median_filter(np.interp(np.arange(len(begins)), holds, begins[holds]), SURFACE.agreeing_profiles, mode="nearest")
     alike = brighter & (np.abs(begins - course) <= SURFACE.max_strip_shift)
-    lasting = np.zeros(len(begins), bool)
-    for first, end in zip(*_stretches(stations)):
-        window = first + _profiles_about(end - first)
-        some = np.where(alike, step_at_limit - SURFACE.lasting_share * step, np.nan)[window]
-        lasting[first:end] = alike[first:end] & (alike[window].sum(1) > 0.5 * SURFACE.lasting_profiles) & (known_median(some, 1) >= 0.0)
-    return np.where(lasting, course, np.nan)
-
-
-def _stretches(stations):
-    """First and last + 1 profiles of stretches without gaps."""
-    cuts = np.flatnonzero(np.diff(stations) > 1.5 * np.diff(stations).min(initial=np.inf)) + 1
-    return np.r_[0, cuts], np.r_[cuts, len(stations)]
-
-
-def _profiles_about(count):
-    """(P, SURFACE.lasting_profiles) int, the profiles nearest to each one; at an end of the road as many on the other side."""
-    window = min(SURFACE.lasting_profiles, count)
-    first = np.clip(np.arange(count) - window // 2, 0, count - window)
-    return first[:, None] + np.arange(window)
+    share, lasting_share = (uniform_filter1d(rows.astype(float), SURFACE.lasting_profiles, mode="reflect") for rows in (alike, alike & lasts))
+    return np.where(alike & (share > 0.5) & (lasting_share >= 0.5 * share), course, np.nan)
 
 
 def _brighter_from(brightness, track, limit):

@@ -40,23 +40,6 @@ class SurfaceProfiles:
 
     NAMES = ("height", "rough", "brightness", "scatter", "count")
 
-    @classmethod
-    def of(cls, points: Points, start: float, length: float, reach: float,
-           road_height: Callable[[np.ndarray], np.ndarray], ahead: Callable[[Points], np.ndarray]) -> SurfaceProfiles:
-        """The rows of a window of the road.
-
-        points : Points of the window
-        start, length : m, station at which it begins, and its length, whole numbers
-        reach : m either side of the reference line
-        road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
-        ahead : function of N Points; (N,) m by which they lay ahead of the vehicle when they were measured
-        """
-        first_row, rows = int(round(start / SURFACE.profile_row)), int(round(length / SURFACE.profile_row))
-        cells = _ground_cells(points, first_row, rows, reach, road_height, SURFACE.profile_row, SURFACE.profile_column,
-                             lambda seen: np.abs(ahead(seen)) <= SURFACE.farthest_ahead)
-        above = cells.height - road_height(cells.stations)[:, None]
-        return cls(cells.stations, cells.offsets, *(v.astype(np.float32) for v in (above, cells.rough, cells.brightness, cells.scatter, cells.count)))
-
     def side(self, sign: int | float) -> SurfaceProfiles:
         """The cells of one side, 1 left or -1 right, outward from the reference line, as views; offsets count outward."""
         middle = int(np.searchsorted(self.offsets, 0.0))
@@ -113,24 +96,29 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     return np.squeeze(0.5 * (low + high), axis)
 
 
-def _ground_columns(reach: float, column_size: float) -> int:
-    """Columns of ground cells on either side of the reference line, as far as it is looked at, m."""
-    return int(np.ceil(reach / column_size))
+def median_about(values: np.ndarray, reach: int) -> np.ndarray:
+    """`known_median` of the rows from `reach` before to `reach` behind each one; of one shape with `values`, (R, ...) floats."""
+    padded = np.pad(values, [(reach, reach), *[(0, 0)] * (values.ndim - 1)], constant_values=np.nan)
+    return known_median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0), -1)
 
 
-def _ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
+def _ground_columns(column_size: float) -> int:
+    """Columns of ground cells on either side of the reference line."""
+    return int(np.ceil(FRAME.corridor / column_size))
+
+
+def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callable[[np.ndarray], np.ndarray],
                  row_size: float = SURFACE.row_length, column_size: float = SURFACE.column_width,
                  bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
     """The ground cells of a window of the road.
 
     points : Points of the window
     first_row, rows : number of the first row, and count of rows
-    reach : m either side of the reference line
     road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
     row_size, column_size : m along and across the road
     bright : function of N Points; (N,) bool of those whose intensity counts. None where brightness and scatter are not wanted
     """
-    half = _ground_columns(reach, column_size)
+    half = _ground_columns(column_size)
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
     index, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
@@ -362,7 +350,7 @@ class MeasuredGround:
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
         in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor.passing())
-        half = _ground_columns(FRAME.corridor, SURFACE.column_width)
+        half = _ground_columns(SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):
             self._read(0, road, row, cells[:, SURFACE.window_rows * number:SURFACE.window_rows * (number + 1)])
@@ -371,7 +359,7 @@ class MeasuredGround:
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
-        half = _ground_columns(FRAME.corridor, SURFACE.profile_column)
+        half = _ground_columns(SURFACE.profile_column)
         profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
         for number, row in enumerate(wanted):
             self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * number:PROFILES_PER_WINDOW * (number + 1)])
@@ -390,10 +378,10 @@ class MeasuredGround:
         windows = [window for window in windows if any(window[2:])]
         phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
             item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
-        self._file = self._file or ArrayFile()
+        file = self._file = self._file or ArrayFile()
         # each goes to the file as it comes
         places = yield Asked(phase, windows, 1.0, lambda parts: [
-            [None if values is None else self._file.put([values], values.nbytes) for values in parts]])
+            [None if values is None else file.put([values], values.nbytes) for values in parts]])
         for places_of_window, (road, row, *_) in zip(places, windows):
             for kept, place in zip(self._kept, places_of_window):
                 if place is not None:
@@ -418,9 +406,12 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted]) -> list[tuple[n
     for road, row, with_cells, with_profiles in windows:
         height = partial(survey.road_height, road)
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
-        profiles = SurfaceProfiles.of(points, row * SURFACE.row_length, SURFACE.window_rows * SURFACE.row_length, FRAME.corridor, height,
-                                      lambda seen: ahead_of_vehicle(survey, seen, seen.s)) if with_profiles else None
-        cells = _ground_cells(points, row, SURFACE.window_rows, FRAME.corridor, height) if with_cells else None
+        cells, profiles = _ground_cells(points, row, SURFACE.window_rows, height) if with_cells else None, None
+        if with_profiles:
+            profiles = _ground_cells(points, int(round(row * SURFACE.row_length / SURFACE.profile_row)), PROFILES_PER_WINDOW, height,
+                                     SURFACE.profile_row, SURFACE.profile_column,
+                                     lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead)
+            profiles.height -= height(profiles.stations)[:, None]
         result.append((_stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)))
     return result
 

@@ -75,7 +75,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(places, places[measured], _agreed(changes[measured], blind[measured], len(rows.offsets)))
-    brighter = other_ground_begins(brightness, places, (track_offset - rows.offsets[0]) / SURFACE.profile_column, changes)
+    brighter = other_ground_begins(brightness, (track_offset - rows.offsets[0]) / SURFACE.profile_column, changes)
     changes = np.interp(rows.stations, places, np.where(np.isfinite(brighter), brighter, changes))
     limits = pavement_limits(rows, changes)
     outward = np.interp(stations, rows.stations, rows.offsets[0] + (limits.cell - 0.5) * SURFACE.profile_column)

@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 
 from ...common.parallel import check_cancelled
 from ..weights import SURFACE
-from .ground_grid import SurfaceProfiles, known_median
+from .ground_grid import SurfaceProfiles, known_median, median_about
 
 USUAL_QUANTILE, USUAL_SIGMAS = 0.5, 0.67   # derived: median of what the cells of the road are off themselves, and its sigmas in a normal distribution
 
@@ -48,7 +48,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
                                                  for values in (rows.height, rows.rough, rows.brightness, rows.scatter, rows.count))
     measured, measured_rows = np.isfinite(height), _added(np.isfinite(height), SURFACE.averaged_rows)
     coverage = _added(np.nan_to_num(count), SURFACE.averaged_rows)
-    height, rough, brightness, scatter = (_around(values) for values in (height, rough, brightness, scatter))
+    height, rough, brightness, scatter = (median_about(values, SURFACE.averaged_rows) for values in (height, rough, brightness, scatter))
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :SURFACE.road_cells], 1)[:, None]
     off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, coverage, cells[:, 0])
     own_rows = _added(measured & np.isfinite(off), SURFACE.own_rows)
@@ -189,12 +189,6 @@ def _along(total, whole):
 def _added(values, reach):
     """Sum of every cell over the rows about it, so many either side."""
     return uniform_filter1d(values.astype(float), 2 * reach + 1, axis=0, mode="constant") * (2 * reach + 1)
-
-
-def _around(values):
-    """Median of every cell over the rows about it."""
-    padded = np.pad(values, ((SURFACE.averaged_rows, SURFACE.averaged_rows), (0, 0)), constant_values=np.nan)
-    return known_median(np.lib.stride_tricks.sliding_window_view(padded, 2 * SURFACE.averaged_rows + 1, axis=0), 2)
 
 
 def _painted(brightness, sigma):

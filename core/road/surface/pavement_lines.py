@@ -18,6 +18,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.open_survey import Survey
+from ..common.pseudo_scanlines import nearest_distance
 from ..common.tracking import GapLine
 from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
@@ -74,8 +75,7 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
 
         def lines_of(rows):
             likely = rows & grown.likely
-            return [tuple(runs) for runs in _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden,
-                                                   grown.offset, places, max_gap)]
+            return _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden, grown.offset, places, max_gap)
 
         lines = _clear_of_curbs(lines_of, lambda runs: _drawn(frame, road, side, carriageway, grown, runs), free, stations, curb_lines)
         for pieces in lines:
@@ -89,27 +89,15 @@ def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
 
     lines_of : function, (R,) bool rows -> runs of lines; drawn : function, runs -> pieces
     """
-    drawn_lines: dict[tuple[tuple[int, int], ...], tuple[list[EdgePiece], np.ndarray]] = {}   # lines drawn so far, and where they cross curbs
     while True:
-        lines = lines_of(rows)
-        for runs in lines:
-            if runs not in drawn_lines:
-                check_cancelled()
-                pieces = drawn(runs)
-                drawn_lines[runs] = pieces, np.concatenate([_crossings(piece, curb_lines) for piece in pieces])
+        check_cancelled()
+        lines = [drawn(runs) for runs in lines_of(rows)]
         # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-        crossings = np.concatenate([np.empty(0), *(drawn_lines[runs][1] for runs in lines)])
-        crossing = rows & (_distance(stations, crossings) <= SURFACE.agreeing_length)
+        crossings = np.concatenate([np.empty(0), *(_crossings(piece, curb_lines) for pieces in lines for piece in pieces)])
+        crossing = rows & (nearest_distance(stations, crossings) <= SURFACE.agreeing_length)
         if not crossing.any():
-            return [drawn_lines[runs][0] for runs in lines]
+            return lines
         rows = rows & ~crossing
-
-
-def _distance(places, others):
-    """(N,) m from each of (N,) places to the nearest of others, infinite where there are none."""
-    around = np.r_[-np.inf, np.sort(others), np.inf]
-    after = np.searchsorted(around, places)
-    return np.minimum(places - around[after - 1], around[after] - places)
 
 
 def _crossings(piece, curb_lines):

@@ -11,7 +11,7 @@ import numpy as np
 from ...curves.robust import MAD_TO_SIGMA
 from ..weights import CURBS, EDGE, SURFACE
 from .ground_change import follow_road, smooth_road
-from .ground_grid import MeasuredGround, known_median
+from .ground_grid import MeasuredGround, known_median, median_about
 
 
 class RoadLook:
@@ -26,8 +26,7 @@ class RoadLook:
         self.cells, self.sign = replace(ground.cells(road), brightness=np.empty((0, 0)), scatter=np.empty((0, 0))), 1
         self.prior = ground.survey.road_height(road, self.cells.stations)
         driven = known_median(self.cells.rough[:, np.abs(self.cells.offsets) < SURFACE.track_reach], 1)
-        driven = np.pad(driven, SURFACE.rows_of_look, constant_values=np.nan)
-        self.usual = known_median(np.lib.stride_tricks.sliding_window_view(driven, 2 * SURFACE.rows_of_look + 1), 1)
+        self.usual = median_about(driven, SURFACE.rows_of_look)
 
     def side(self, sign: int) -> RoadLook:
         """The look to the left, 1, or to the right, -1."""
@@ -119,5 +118,6 @@ class RoadLook:
 
 def _median_about(step):
     """(N,) median of the rows about each one, NaN where too few of them were seen."""
-    rows = np.lib.stride_tricks.sliding_window_view(np.pad(step, CURBS.lowered_rows // 2, constant_values=np.nan), CURBS.lowered_rows)
-    return np.where(np.isfinite(rows).sum(1) >= CURBS.min_piece_steps, known_median(rows, 1), np.nan)
+    reach = CURBS.lowered_rows // 2
+    seen = np.convolve(np.isfinite(step), np.ones(CURBS.lowered_rows))[reach:len(step) + reach] if len(step) else 0
+    return np.where(seen >= CURBS.min_piece_steps, median_about(step, reach), np.nan)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from ...common.arrays import mask_runs
 from ...common.features import ROAD_SURFACE
 from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS
@@ -89,14 +90,10 @@ def _polygon(frame, road, carriageway, rows):
 
 def _as_far_as_measured(there, points):
     """The rows of road from the first to the last one with points: the limits of a few rows before and behind them are known as well."""
-    measured = there.copy()
-    cuts = np.r_[0, np.flatnonzero(np.diff(there.astype(int))) + 1, len(there)]
-    for a, b in zip(cuts[:-1], cuts[1:]):
-        filled = np.flatnonzero(points[a:b])
-        if there[a]:
-            measured[a:b] = False
-            if len(filled):
-                measured[a + filled[0]:a + filled[-1] + 1] = True
+    measured = np.zeros(len(there), bool)
+    for a, b in mask_runs(there):
+        filled = a + np.flatnonzero(points[a:b])
+        measured[filled.min(initial=b):filled.max(initial=a - 1) + 1] = True
     return measured
 
 
@@ -104,9 +101,8 @@ def _without_short_runs(mask, shortest):
     """The mask with runs of fewer than `shortest` rows changed to the value around them, True runs first."""
     mask = mask.copy()
     for value in (True, False):
-        cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
-        for a, b in zip(cuts[:-1], cuts[1:]):
-            if mask[a] == value and b - a < shortest and (a > 0 or b < len(mask)):
+        for a, b in mask_runs(mask == value):
+            if b - a < shortest and (a > 0 or b < len(mask)):
                 mask[a:b] = not value
     return mask
 

@@ -1,5 +1,6 @@
 """Two methods of finding road boundaries, and how they check each other."""
 
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
+from lanewright.core.road.common.decimation import PointDecimation
 from lanewright.core.road.common.side_curbs import SideSteps, points_of_side
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.detect_boundaries import (
@@ -17,7 +19,7 @@ from lanewright.core.road.detect_boundaries import (
     measure_agreement,
 )
 from lanewright.core.road.edges.fit import fit_road_edges
-from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.road.profiles.detect import main_curbs
 
 FOOT = -0.02   # m, height of the curb's foot above the expected road
 
@@ -85,9 +87,9 @@ def seen(*stretches):
 @pytest.fixture(scope="module")
 def parked():
     """A survey of a street with a parked car between stations 20 and 25, and what was seen on its left."""
-    survey, beside = survey_of(parked_car(street(length=60.0), start=20.0), driven(60.0)), {}
-    detect_curbs(survey, include_returns=False, beside=beside)
-    return survey, beside[0]["left"]
+    survey, settings = survey_of(parked_car(street(length=60.0), start=20.0), driven(60.0)), CurbSettings()
+    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
+        return survey, main_curbs(decimation, settings)[1][0]["left"]
 
 
 def drawn(parked, *methods):

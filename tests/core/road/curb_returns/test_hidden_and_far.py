@@ -29,7 +29,7 @@ def a_raster(raised, keep=0.3, grade=0.0, seed=8):
 
 def followed(raster, height=0.12, across=0.0, grade=0.0):
     """Steps in the continuation of the left curb of the side street, from y = 5.5 outward."""
-    ends = FollowedEnds(*np.array([[LEFT_CURB + across, 5.5, 5.5 * grade, 0.0, 1.0, -1.0, height]]).T)
+    ends = FollowedEnds(*np.array([[LEFT_CURB + across, 5.5, 5.5 * grade, 0.0, 1.0, -1.0, height, 0]]).T)
     return followed_steps(raster, ends, 0.025, 0.35, np.radians(60.0), lambda x, y: y < 12.5)
 
 

@@ -12,7 +12,7 @@ from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.common.sides import expected_height
 from lanewright.core.road.curb_returns.detect import with_curb_returns
 from lanewright.core.road.curb_returns.islands import island_stretches
-from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.road.profiles.detect import main_curbs
 from lanewright.core.road.weights import CURBS
 from street_plans import LENGTH, scan, sidewalks, survey_along
 
@@ -63,10 +63,10 @@ def test_ground_that_is_low_only_behind_the_curbs_of_the_road_is_none():
 def test_the_curb_behind_a_platform_is_the_roads_own(side):
     sign = 1 if side == "left" else -1
     platform = shapely.box(10.0, *sorted((sign * 3.0, sign * 5.0))[:1], 26.0, sorted((sign * 3.0, sign * 5.0))[1])
-    survey, sides = survey_along(scan(shapely.union_all([sidewalks(8.0), platform]))), {}
+    survey = survey_along(scan(shapely.union_all([sidewalks(8.0), platform])))
     settings = CurbSettings()
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        points = detect_curbs(survey, settings, include_returns=False, decimation=decimation, beside=sides)
+        points, sides = main_curbs(decimation, settings)
         # as if the curb behind had not been seen in profiles
         hidden = (points.side == side) & (points.station > 9.0) & (points.station < 27.0)
         s = np.arange(10.5, 26.0)
