@@ -95,20 +95,14 @@ class Algorithm:
         """Add a layer of the road map as an input."""
         self.add_input("layer", name, geometry=MAP_LAYERS[name].geometry, **more)
 
-    def add_survey(self, trajectory_optional=False, without=""):
-        """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
-        self.add_point_clouds()
-        self.add_trajectory(trajectory_optional, without)
-        self.add_crs()
-
-    def add_point_clouds(self):
+    def add_survey(self, trajectory_optional=False):
+        """Point clouds, trajectory and the CRS for clouds that carry none."""
         self.add_input("clouds", "POINT_CLOUDS")
-
-    def add_trajectory(self, optional=False, without=""):
-        self.add_input("trajectory", "TRAJECTORY", help=tr(without) if without else "", optional=optional)
-
-    def add_crs(self):
+        self.add_trajectory(trajectory_optional)
         self.add_input("crs", "CRS", optional=True, advanced=True)
+
+    def add_trajectory(self, optional=False):
+        self.add_input("trajectory", "TRAJECTORY", optional=optional)
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""

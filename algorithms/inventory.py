@@ -29,11 +29,10 @@ def survey_with_borders(call, progress, above_road):
     return survey, BorderLayers(*layers.values())
 
 
-SECTIONS = "products.inventory.borders:CrossSectionSettings"
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
-SECTION_SETTINGS = settings_of(SECTIONS, "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*",
-    COUNTRY=dict(choices=tuple(COUNTRIES)))
+SECTION_SETTINGS = settings_of("products.inventory.borders:CrossSectionSettings",
+    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class CrossSections(Algorithm):

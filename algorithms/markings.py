@@ -37,9 +37,7 @@ class CorrectIntensity(Algorithm):
         call.text("REPORT", html_page("intensity_correction", report=report))
 
 
-IMAGE = "core.intensity.image:ImageSettings"
-
-IMAGE_SETTINGS = settings_of(IMAGE, "CELL_SIZE")
+IMAGE_SETTINGS = settings_of("core.intensity.image:ImageSettings", "CELL_SIZE")
 
 
 class IntensityImage(Algorithm):

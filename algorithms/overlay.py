@@ -88,8 +88,6 @@ def _rough_points(call, image, crs):
     return replace(points, easting=easting, northing=northing, crs=crs)
 
 
-POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
-
 GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceSettings",
     "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*", EXTRAPOLATION=dict(choices=("automatic", "draw", "leave-out")),
     RESAMPLING=dict(choices=("bilinear", "nearest", "cubic")))
@@ -103,7 +101,7 @@ class GeoreferenceImage(Algorithm):
     def declare(self):
         self.add_input("raster", "IMAGE")
         self.add_input("layer", "GCPS", optional=True)
-        self.add_input("file", "GCP_FILE", optional=True, file_filter=POINTS_FILTER)
+        self.add_input("file", "GCP_FILE", optional=True, file_filter="Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)")
         self.add_input("crs", "CRS", optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)
         self.add_output("raster", "OUTPUT")

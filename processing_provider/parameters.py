@@ -32,7 +32,7 @@ CLOUD_FILTER = "Point clouds (*.las *.laz *.vpc *.LAS *.LAZ *.VPC);;All files (*
 # Found by name when a dialog is made, which happens in a window only
 DESKTOP = f"{__name__.split('.')[0]}.desktop"
 WIDGETS = {"clouds": "cloud_widget.PointCloudsWrapper", "trajectory": "trajectory_widget.TrajectoryWrapper",
-           "columns": "columns_widget.ColumnsWrapper", "choice": "dialog_wrapper.ChoiceWrapper"}  # choices in other languages than English
+           "columns": "trajectory_widget.ColumnsWrapper", "choice": "dialog_wrapper.ChoiceWrapper"}  # choices in other languages than English
 FILE_FILTERS = {"cloud": "LAZ (*.laz);;LAS (*.las)", "report": "HTML (*.html)"}  # of results
 DECIMALS = 3  # millimetres; QGIS would show six
 
