@@ -83,9 +83,8 @@ class Algorithm:
     def _words(self, name, settings=""):
         """The paragraphs of help.txt for a parameter or number: its label, then its help."""
         texts = help_texts()
-        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
         return (texts.get(f"{self.ID} {name}") or texts.get(f"{settings.partition(':')[2]} {name}")
-                or [*common, *texts.get(f"{self.ID} + {name}", [])])
+                or [*texts.get(name, []), *texts.get(f"{self.ID} + {name}", [])])
 
     def add_input(self, kind, name, **more):
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""
