@@ -10,10 +10,7 @@ from qgis.core import (
     Qgis,
     QgsApplication,
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
     QgsMapLayer,
-    QgsProject,
     QgsRectangle,
     QgsSettings,
 )
@@ -33,6 +30,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
+from ..processing_provider.results.layer_tree import brought_to
 from ..processing_provider.texts import tr
 
 LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPath"  # QGIS's own settings
@@ -100,14 +98,6 @@ def folder_for_results(parent: QWidget) -> str:
     if folder:
         settings.setValue(LAST_OUTPUT, folder)
     return folder
-
-
-def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:
-    """An extent in another CRS; an empty one where it has no place there."""
-    try:
-        return QgsCoordinateTransform(source, target, QgsProject.instance()).transformBoundingBox(extent)
-    except QgsCsException:
-        return QgsRectangle()
 
 
 def show_extent(canvas: QgsMapCanvas, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> None:

@@ -23,9 +23,8 @@ from ..algorithms.survey_files import trajectory_path
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
-from .call import FeedbackProgress, QgisCall
+from .call import FeedbackProgress, QgisCall, asks_servers, check_files
 from .dependencies import missing_packages
-from .input_files import asks_servers, check_files
 from .parameters import qgis_parameter, retired_parameter
 from .results.road_maps import road_map_of
 from .results.runs import note_run
