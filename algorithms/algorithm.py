@@ -31,7 +31,6 @@ class Algorithm:
     """
 
     ID = TITLE = GROUP = ""
-    LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # names of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
@@ -167,6 +166,7 @@ class OutputSpec(ParameterSpec):
     """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML), file, or folder (for several files)."""
 
     by_default: bool = True   # a dialog makes it unless told otherwise
+    look: str = ""   # the result whose map style it has, where that is not its own name
     schema: tuple = ()   # fields of a layer, empty where they are not fixed
     suffixes: tuple = ()   # the endings that a file may have; the first of its `file_filter` is the default
 

@@ -137,7 +137,6 @@ BOUNDARY_SETTINGS = settings_of("products.assess.lines:BoundaryAccuracySettings"
 
 class AssessBoundaries(Algorithm):
     ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = ("PRECISION RECALL F1 IOU CORRECT MISSED FALSE EXCLUDED_INTERVALS MEAN RMSE P95 MAXIMUM HEIGHT_MEAN HEIGHT_RMSE HEIGHT_P95 "
                "HEIGHT_MAXIMUM PRECISION_LEFT RECALL_LEFT F1_LEFT PRECISION_RIGHT RECALL_RIGHT F1_RIGHT").split()
 
@@ -150,7 +149,7 @@ class AssessBoundaries(Algorithm):
         self.add_input("choice", "EDGES", default="automatic", choices=("automatic", "all", "curbs"))
         self.add_input("expression", "EXCLUDED", optional=True, advanced=True, default="", of="REFERENCE")
         self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
-        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ", look="ASSESSED_LINES")
         self.add_report()
 
     def work(self, call, progress):
@@ -210,7 +209,6 @@ MARKING_SETTINGS = settings_of("products.assess.markings:MarkingAccuracySettings
 
 class AssessMarkings(Algorithm):
     ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
     NUMBERS = ("PRECISION RECALL F1 IOU PRECISION_TOLERANT RECALL_TOLERANT F1_TOLERANT OBJECT_PRECISION OBJECT_RECALL OBJECT_F1 HITS MISSES "
                "FALSE_ALARMS").split()
     RETIRED = ("FOUND_SHARE",)
@@ -224,8 +222,8 @@ class AssessMarkings(Algorithm):
         self.add_input("text", "CLASS_FIELD", optional=True, advanced=True, default="class")
         self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
         self.add_input("raster", "IMAGE", optional=True)
-        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
-        self.add_output("raster", "CELLS", optional=True, by_default=False)
+        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ", look="ASSESSED_POLYGONS")
+        self.add_output("raster", "CELLS", optional=True, by_default=False, look="ASSESSED_CELLS")
         self.add_report()
 
     def work(self, call, progress):
@@ -276,7 +274,6 @@ LINE_SETTINGS = settings_of("products.assess.lines:LineAccuracySettings", "TOLER
 
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = ("COMPLETENESS CORRECTNESS QUALITY MISCODING PRECISION RECALL F1 MEAN RMSE P95 MAXIMUM HEIGHT_RMSE GAPS_PER_KM MEAN_GAP "
                "RESULT_LENGTH REFERENCE_LENGTH").split()
 
@@ -288,7 +285,7 @@ class AssessDrivingLines(Algorithm):
         self.add_input("choice", "WIDTH", default="half-width", choices=("half-width", "total-width"))
         self.add_settings(LINE_SETTINGS)
         self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
-        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
+        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ", look="ASSESSED_LINES")
         self.add_report()
 
     def work(self, call, progress):

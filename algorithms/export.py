@@ -133,7 +133,6 @@ ATTRIBUTE_SETTINGS = settings_of("products.export.road_attributes:AttributeSetti
 
 class RoadAttributes(Algorithm):
     ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
-    LOOKS = {"OUTPUT": "LANES"}
     NUMBERS = "LANE_COUNT KNOWN SPEEDS NAMES".split()
 
     def declare(self):
@@ -141,7 +140,7 @@ class RoadAttributes(Algorithm):
         self.add_input("file", "OSM_FILE", optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
         self.add_input("layer", "WAYS", optional=True)
         self.add_settings(ATTRIBUTE_SETTINGS)
-        self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
+        self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", look="LANES")
 
     def work(self, call, progress):
         from ..core.driving.layers import Lanes
@@ -503,12 +502,11 @@ ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of th
 
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
-    LOOKS = {"OUTPUT": "FINDINGS"}
     NUMBERS = "FINDINGS FAULTS LANES SUCCESSORS NEIGHBOURS".split()
 
     def declare(self):
         add_any_map(self)
-        self.add_sink("OUTPUT", fields=MAP_FINDINGS, geometry="PointZ")
+        self.add_sink("OUTPUT", fields=MAP_FINDINGS, geometry="PointZ", look="FINDINGS")
         self.add_report()
 
     def work(self, call, progress):

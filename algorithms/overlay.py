@@ -95,7 +95,6 @@ GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceS
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
-    LOOKS = {"OUTPUT": "ORTHOIMAGE"}
     NUMBERS = "POINTS RMSE LEFT_OUT_RMSE CHECK_POINTS CHECK_RMSE LARGEST OUTSIDE".split()
 
     def declare(self):
@@ -104,7 +103,7 @@ class GeoreferenceImage(Algorithm):
         self.add_input("file", "GCP_FILE", optional=True, file_filter="Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)")
         self.add_input("crs", "CRS", optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)
-        self.add_output("raster", "OUTPUT")
+        self.add_output("raster", "OUTPUT", look="ORTHOIMAGE")
         self.add_sink("RESIDUALS", geometry="LineStringZ", optional=True, fields=RESIDUALS)
         self.add_report()
 

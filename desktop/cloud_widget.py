@@ -13,7 +13,7 @@ from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToo
 
 from ..algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files
 from ..core.common.errors import RoadExtractionError
-from ..processing_provider.parameters import CLOUD_FILTER
+from ..processing_provider.algorithm import CLOUD_FILTER
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
 from .widgets import LAST_INPUT, column, wrapped

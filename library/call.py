@@ -109,7 +109,7 @@ class FileCall(Call):
         """Write the layers beside their destinations, then give all results their names."""
         provenance = provenance_now(self.algorithm.ID, self.values(), self.warnings, self.names_only)
         for name, features in self._layers:
-            features.description = "\n".join(provenance.history(self.algorithm.LOOKS.get(name, name)))
+            features.description = "\n".join(provenance.history(self.algorithm.parameter(name).look or name))
             value = self.destination(name)
             path, table = destination_path(value), file_and_table(value)[1]
             unfinished = self._unfinished.begin_copy(path) if table else self._unfinished.begin(path)

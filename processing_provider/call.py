@@ -167,7 +167,7 @@ class QgisCall(Call):
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
-            look = self.algorithm.LOOKS.get(name, name)
+            look = self.algorithm.parameter(name).look or name
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
             style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
