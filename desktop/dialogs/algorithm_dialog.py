@@ -40,7 +40,25 @@ SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distanc
 FEWEST_OUTPUTS = 3  # that are worth one place for all
 
 
-class LanewrightDialog(AlgorithmDialog):
+class _OnePlaceForAll:
+    """What the dialog of a run and that of a batch have in common."""
+
+    def choose_folder(self) -> None:
+        folder = folder_for_results(self)
+        if folder:
+            self.save_everything_to(folder)
+
+    def _button(self, text, tip, what=None):
+        push_button = button(text, what, tip)
+        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
+        return push_button
+
+    def _say(self, text):
+        self.messageBar().clearWidgets()
+        self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
+
+
+class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
@@ -94,17 +112,7 @@ class LanewrightDialog(AlgorithmDialog):
         if survey in layer_by_survey or chosen in layer_by_survey.values():
             self.setParameters({"CORRECTIONS": layer_by_survey.get(survey)})
 
-    def _button(self, text, tip):
-        push_button = button(text, tip=tip)
-        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
-        return push_button
-
     # -- everything to one place ----------------------------------------------------------------
-
-    def choose_folder(self) -> None:
-        folder = folder_for_results(self)
-        if folder:
-            self.save_everything_to(folder)
 
     def save_everything_to(self, folder: str) -> None:
         """Set the destinations of all results that are made by default."""
@@ -128,10 +136,6 @@ class LanewrightDialog(AlgorithmDialog):
         places = database_destinations(self.algorithm(), connection, schema, prefix)
         self.setParameters(places)
         self._say(tr("{count} layers go to the schema {schema} of {connection}.").format(count=len(places), schema=schema, connection=connection))
-
-    def _say(self, text):
-        self.messageBar().clearWidgets()
-        self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
 
     # -- presets ----------------------------------------------------------------------------------
 
@@ -215,7 +219,7 @@ def _folders_of(cloud):
         return set()
 
 
-class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
+class BatchAlgorithmDialog(_OnePlaceForAll, qgis_batch.BatchAlgorithmDialog):
     """QGIS's batch of an algorithm; `title` stands in its frame.
 
     It has the name of QGIS's own, by which widgets know that they stand in the table of a batch.
@@ -229,14 +233,13 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
             if name in self.mainWidget().parameter_to_column:
                 self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
         if {CLOUDS, "TRAJECTORY"} <= set(self.mainWidget().parameter_to_column):
-            self.buttonBox().addButton(button(tr("Add the surveys of a folder…"), self.choose_surveys, tr(
-                "One row for each folder with point clouds, and the trajectory that lies beside them")), QDialogButtonBox.ButtonRole.ResetRole)
+            self._button(tr("Add the surveys of a folder…"), tr("One row for each folder with point clouds, and the trajectory that lies beside them"),
+                         self.choose_surveys)
         for fill in self.findChildren(qgis_batch_panel.BatchPanelFillWidget):
             if fill.parameterDefinition.name() == CLOUDS:  # QGIS would make a row of every file of whatever kind
                 fill.showDirectorySelectionDialog = self.choose_surveys
-        self.buttonBox().addButton(button(tr("Save everything to…"), self.choose_folder, tr(
-            "One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it")),
-            QDialogButtonBox.ButtonRole.ResetRole)
+        self._button(tr("Save everything to…"), tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and "
+                                                  "reports beside it"), self.choose_folder)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
 
     def choose_surveys(self) -> None:
@@ -259,13 +262,7 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
             if drive:
                 panel.wrappers[row][panel.parameter_to_column["TRAJECTORY"]].setParameterValue(drive, self.processingContext())
             row += 1
-        self.messageBar().clearWidgets()
-        self.messageBar().pushMessage("", tr("{count} surveys in {folder}.").format(count=len(surveys), folder=folder), level=Qgis.MessageLevel.Info)
-
-    def choose_folder(self) -> None:
-        folder = folder_for_results(self)
-        if folder:
-            self.save_everything_to(folder)
+        self._say(tr("{count} surveys in {folder}.").format(count=len(surveys), folder=folder))
 
     def save_everything_to(self, folder: str) -> None:
         """Set the destinations of the rows that have an input."""
@@ -273,9 +270,7 @@ class BatchAlgorithmDialog(qgis_batch.BatchAlgorithmDialog):
         for row, name in enumerate(names):
             for output, path in destinations(self.algorithm(), folder, name).items():
                 self._place(row, output).setValue(path)
-        self.messageBar().clearWidgets()
-        self.messageBar().pushMessage("", tr("The results of {count} rows go to {folder}: {names}.").format(
-            count=len(names), folder=folder, names=", ".join(names)), level=Qgis.MessageLevel.Info)
+        self._say(tr("The results of {count} rows go to {folder}: {names}.").format(count=len(names), folder=folder, names=", ".join(names)))
 
     def surveys(self) -> list[str]:
         """What the survey of each row is called, as a name of files, no two alike."""
