@@ -233,13 +233,14 @@ class BatchAlgorithmDialog(_OnePlaceForAll, qgis_batch.BatchAlgorithmDialog):
             if name in self.mainWidget().parameter_to_column:
                 self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
         if {CLOUDS, "TRAJECTORY"} <= set(self.mainWidget().parameter_to_column):
-            self._button(tr("Add the surveys of a folder…"), tr("One row for each folder with point clouds, and the trajectory that lies beside them"),
-                         self.choose_surveys)
+            self._button(tr("Add the surveys of a folder…"), tr(
+                "One row for each folder with point clouds, and the trajectory that lies beside them"), self.choose_surveys)
         for fill in self.findChildren(qgis_batch_panel.BatchPanelFillWidget):
             if fill.parameterDefinition.name() == CLOUDS:  # QGIS would make a row of every file of whatever kind
                 fill.showDirectorySelectionDialog = self.choose_surveys
-        self._button(tr("Save everything to…"), tr("One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and "
-                                                  "reports beside it"), self.choose_folder)
+        self._button(tr("Save everything to…"), tr(
+            "One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"),
+            self.choose_folder)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
 
     def choose_surveys(self) -> None:
