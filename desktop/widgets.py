@@ -6,28 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from weakref import WeakKeyDictionary
 
-from qgis.core import (
-    Qgis,
-    QgsApplication,
-    QgsCoordinateReferenceSystem,
-    QgsMapLayer,
-    QgsRectangle,
-    QgsSettings,
-)
+from qgis.core import Qgis, QgsApplication, QgsCoordinateReferenceSystem, QgsMapLayer, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas, QgsMapTool, QgsMessageViewer
 from qgis.PyQt import sip
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QDialog,
-    QDialogButtonBox,
-    QFileDialog,
-    QHBoxLayout,
-    QLabel,
-    QLayout,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QLayout, QPushButton, QVBoxLayout, QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
 from ..processing_provider.results.layer_tree import brought_to
@@ -39,6 +21,8 @@ LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPa
 def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
     """A button that calls a function without arguments."""
     push_button = QPushButton(text, toolTip=tip)
+    if len(text) == 1:   # an arrow
+        push_button.setFixedWidth(34)
     if what is not None:
         push_button.clicked.connect(lambda checked=False: what())
     return push_button

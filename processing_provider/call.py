@@ -43,7 +43,9 @@ class QgisCall(Call):
     def __init__(self, processing, parameters, context, feedback):
         super().__init__(processing.declaration, parameters)
         self.processing, self.context, self.feedback = processing, context, feedback
-        self._inputs = input_files(processing, parameters, context)
+        # (path, table or "", label) of every file that the inputs name and that is there
+        self._inputs = [(path, table, definition.description()) for definition in _inputs(processing, READ)
+                        for path, table in map(_file_of, _sources(parameters.get(definition.name()), context)) if path is not None]
 
     @property
     def names_only(self):
@@ -55,7 +57,8 @@ class QgisCall(Call):
         names = self.parameters.get(name)
         if not isinstance(names, (list, tuple)) and not hasattr(names, "source"):
             names = self.processing.parameterAsFileList(self.parameters, name, self.context)
-        return [layer_file(source, self.context) for source in (names if isinstance(names, (list, tuple)) else [names])]
+        # each a path, or a layer, its name or its id in the project
+        return [next(iter(_sources(name, self.context)), str(name)) for name in (names if isinstance(names, (list, tuple)) else [names])]
 
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)
@@ -152,7 +155,9 @@ class QgisCall(Call):
         return self.processing.parameterAsFileOutput(self.parameters, name, self.context)
 
     def read_as(self, value, path):
-        return written_over(value, path, self._inputs)
+        table = QgsDataSourceUri(value.removeprefix("ogr:")).table() if value.startswith("ogr:") else ""
+        return next((label for source, read, label in self._inputs if path.exists() and os.path.samefile(path, source)
+                     and (not table or table == (read or _first_table(source)))), "")
 
     def finish(self, numbers):
         """Write the layers, name the files, and return the dictionary QGIS wants."""
@@ -243,28 +248,8 @@ OPENED_BY_QGIS = ("source", "vector", "raster", "layer")
 READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
 
 
-def input_files(algorithm, parameters, context):
-    """[(path, table or "", label)] of every file that the inputs name and that is there."""
-    return [(path, table, definition.description()) for definition in _inputs(algorithm, READ)
-            for path, table in map(_file_of, _sources(parameters.get(definition.name()), context)) if path is not None]
-
-
 def _inputs(algorithm, kinds):
     return [definition for definition in algorithm.parameterDefinitions() if definition.type() in kinds and not definition.isDestination()]
-
-
-def written_over(destination, path, inputs):
-    """The label of the input whose file or table the destination value would replace, or ""."""
-    table = QgsDataSourceUri(destination.removeprefix("ogr:")).table() if destination.startswith("ogr:") else ""
-    for source, read, label in inputs:
-        if path.exists() and os.path.samefile(path, source) and (not table or table == (read or _first_table(source))):
-            return label
-    return ""
-
-
-def layer_file(value, context):
-    """The file of a point cloud that a value names: a path, or a layer, its name or its id in the project; else the value as text."""
-    return next(iter(_sources(value, context)), str(value))
 
 
 def check_files(algorithm, parameters, context):
