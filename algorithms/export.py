@@ -15,7 +15,6 @@ from .survey_input import READING_SETTINGS, open_survey_with, road_points_of
 from .texts import languages, told, tr
 
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
-MAP_NUMBERS = "LANE_COUNT LENGTH".split()
 
 
 def add_map_layers(algorithm):
@@ -449,7 +448,7 @@ class PrintSheets(Algorithm):
 
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
-    NUMBERS = MAP_NUMBERS
+    NUMBERS = "LANE_COUNT LENGTH".split()
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
@@ -461,7 +460,7 @@ class ImportOpenDrive(Algorithm):
 
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    NUMBERS = MAP_NUMBERS
+    NUMBERS = "LANE_COUNT LENGTH".split()
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")

@@ -21,7 +21,6 @@ from .background import SampleRun
 from .manual import ManualWindow
 from .widgets import all_is_there, column, say
 
-PROVIDER = "lanewright"
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
 
@@ -91,7 +90,7 @@ class Menu(QObject):
         """A sub-menu that opens the models of the plugin in QGIS's model designer, each as a copy to be changed and saved."""
         menu = QMenu(tr("Open a model in the designer"), self.iface.mainWindow())
         menu.setIcon(QgsApplication.getThemeIcon("/processingModel.svg"))
-        provider = QgsApplication.processingRegistry().providerById(PROVIDER)
+        provider = QgsApplication.processingRegistry().providerById("lanewright")
         for algorithm in provider.algorithms() if provider else ():
             if isinstance(algorithm, QgsProcessingModelAlgorithm):
                 menu.addAction(algorithm.displayName(), lambda checked=False, name=algorithm.id(): self.open_model(name))

@@ -47,8 +47,7 @@ from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .axes import MapLine, Sheet, accuracy_of, axes_of, lines_of, road_lines, sheets_along
 from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, LETTER, Drawing, station_text, text_width
-from .legend import add_legend, as_it_stands, classes_by_layer, legend_height, text_format
+from .drawing import DARK, GREY, LETTER, Drawing, add_legend, as_it_stands, classes_by_layer, legend_height, station_text, text_format, text_width
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}  # mm, ISO 216
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
