@@ -243,21 +243,20 @@ def _span(survey):
 def _paint(result, image_path, settings, stages, executor, asphalt):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
-    looked = {}
+    pieces = scatter = None
     if settings.correct:
         (result.road_points, result.intensity_report), pieces, scatter = stages.run(
             "intensity", "Correcting intensity …", _corrected, result.road_points, frame, settings.image, asphalt, depends=settings.image)
-        looked = dict(image=pieces, markings=scatter)
     passing = executor.passing()
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
-                       result.road_points, settings.image, path=image_path, pieces=looked.get("image"), depends=(settings.correct, settings.image),
+                       result.road_points, settings.image, path=image_path, pieces=pieces, depends=(settings.correct, settings.image),
                        free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path) if image_path else None)
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
-                        result.road_points, image, frame, settings.markings, scatter=looked.get("markings"), depends=settings.markings)
+                        result.road_points, image, frame, settings.markings, scatter=scatter, depends=settings.markings)
     executor.forget()
     if stages.kept is None:
         image.close()

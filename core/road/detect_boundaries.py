@@ -131,7 +131,8 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
     boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress)))
     if "both" in points_by_method:
-        boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, *(points_by_method[method] for method in METHODS), frame=frame)
+        first, second = (points_by_method[method] for method in METHODS)
+        boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)
         lengths = boundaries.length_by_method = {method: _measured_length(points_by_method[method]) for method in METHODS}
         if any(lengths.values()):
             progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "

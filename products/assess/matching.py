@@ -245,9 +245,6 @@ class Rates:
         """Intersection over union: tp / (tp + fp + fn) = F1 / (2 - F1)."""
         return self.f1 / (2.0 - self.f1)
 
-    def __add__(self, other: Rates) -> Rates:
-        return Rates(self.right + other.right, self.false + other.false, self.missed + other.missed, self._found + other._found)
-
 
 @dataclass(frozen=True)
 class Errors:

@@ -105,12 +105,14 @@ def _templates():
     from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only when a file is written: QGIS starts no slower
     from markupsafe import Markup
 
+    def escaped(value, quote=True):
+        return value if isinstance(value, Markup) else Markup(escape(written(value), quote))   # nosec B704: it is escaped
+
     environment = Environment(loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=True, undefined=StrictUndefined,
-                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
-                              finalize=lambda value: value if isinstance(value, Markup) else Markup(escape(written(value))))
-    environment.filters["text"] = lambda value: Markup(escape(value, quote=False))
-    environment.globals.update(zip=zip, attributes=lambda **values: Markup("".join(
-        f' {name}="{escape(written(value))}"' for name, value in values.items() if value is not None)))
+                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, finalize=escaped)
+    environment.filters["text"] = lambda value: escaped(value, quote=False)
+    environment.globals.update(zip=zip, attributes=lambda **values: Markup("").join(
+        Markup(' {}="{}"').format(name, escaped(value)) for name, value in values.items() if value is not None))
     return environment
 
 

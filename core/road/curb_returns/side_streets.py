@@ -60,7 +60,7 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     ends = [(curb, at_tail, _end_of(curb, at_tail, survey, road)) for curb in curbs if not curb.closed and curb.kind in BEYOND_KINDS
             for at_tail in (True, False)]
     open_ends = [(end, curb, at_tail) for curb, at_tail, end in ends if end is not None and _leaves(end, survey.frame.roads)
-                 and not met.within(*end.ahead(np.ones(1)), distance=0.5).any()]
+                 and not met.within(np.array([end.x + end.tx]), np.array([end.y + end.ty]), 0.5).any()]
     phase = Phase(_course_beyond, decimation, (), lambda end: "the curbs of side streets")
     courses = yield Asked(phase, [end for end, *_ in open_ends], 1.0)
     line = survey.frame.road(road)
@@ -69,7 +69,8 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
 
 def _course_beyond(decimation: PointDecimation, end: CurbEnd) -> _CurbCourse | None:
     """The phase that follows a curb beyond the corridor from its end: its course, None where it is not seen."""
-    return led_beyond(*_ground(decimation, end), end=end)
+    t, u, z = _ground(decimation, end)
+    return led_beyond(t, u, z, end)
 
 
 def _end_of(curb, at_tail, survey, road):

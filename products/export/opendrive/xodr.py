@@ -191,7 +191,7 @@ def _sides_of(section):
 
 
 def _stripes_of(mark):
-    """(dash, gap, aside), metres, of every stripe of a mark that is told apart; none where its type says it all."""
+    """(dash, gap, aside), metres, of every stripe of a mark; none where its type says it all."""
     stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
     return [(*((mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)), aside if mark.apart else 0.0)
             for stripe, aside in zip(stripes, (mark.apart / 2, -mark.apart / 2))]

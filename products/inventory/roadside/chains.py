@@ -83,7 +83,8 @@ def find_chains(uprights: Uprights, road: int, side: int, max_gap: float, min_le
     if look is not None:
         gaps = _gaps(uprights, list(_groups(uprights, pairs)), range(reach + 1, int(round(MAX_HIDDEN / UPRIGHT_SLICE)) + 1))
         gaps = look(gaps) if len(gaps) else gaps
-        gaps = gaps[(gaps.last - gaps.first + 1 < reach) | gaps.covered]
+        slices = gaps.last - gaps.first + 1
+        gaps = gaps[(slices < reach) | (gaps.empty < TOLD_GAP) & (gaps.hidden >= MIN_HIDDEN * slices)]
         hidden[gaps.before], empty[gaps.before] = gaps.hidden, gaps.empty
         pairs = np.concatenate([pairs, np.c_[gaps.before, gaps.after]])
     chains = []
@@ -200,11 +201,6 @@ class Gaps(Rows):
     share: np.ndarray   # (G,) share of the pulses that reach the line which it stops
     empty: np.ndarray   # (G,) number of slices that show what lies beyond
     hidden: np.ndarray   # (G,) number of slices that something before the line hides
-
-    @property
-    def covered(self) -> np.ndarray:
-        """(G,) bool, whether the gap is hidden, as far as one can tell."""
-        return (self.empty < TOLD_GAP) & (self.hidden >= MIN_HIDDEN * (self.last - self.first + 1))
 
 
 def _gaps_between(uprights: Uprights, ends: list[np.ndarray], begins: list[np.ndarray]) -> Gaps:

@@ -59,7 +59,8 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 parts.setdefault(key, []).append(stretches)
         for (sort, side), stretches in sorted(parts.items()):
             into = partial(_look_into, survey, road, side, edges, settings.reach) if sort == "line" else None
-            chains = find_chains(Uprights.joined(stretches), road, side, settings.max_gap, settings.min_length, into)
+            whole = Uprights.join(stretches)
+            chains = find_chains(whole[np.lexsort((whole.d, whole.slice))], road, side, settings.max_gap, settings.min_length, into)
             unknown += sum(chain.length for chain in chains if chain.members.above_view.mean() > 0.5)
             if sort == "gutter":
                 classified = [("gutter", chain) for chain in chains]

@@ -54,12 +54,6 @@ class Uprights(Rows):
     rough: np.ndarray   # (N,) m across between two points of its face of which one is next above the other, median
 
     @staticmethod
-    def joined(parts: list[Uprights]) -> Uprights:
-        """All uprights of several parts, sorted by slice and offset."""
-        whole = Uprights.join(parts)
-        return whole[np.lexsort((whole.d, whole.slice))]
-
-    @staticmethod
     def none() -> Uprights:
         """No uprights."""
         empty = np.empty(0)

@@ -32,11 +32,6 @@ class SurveyedPaint:
     left: float   # left, top: map coordinates of its outer corner, the origin of local coordinates
     top: float
 
-    @property
-    def known(self) -> np.ndarray:
-        """(H, W) bool."""
-        return np.isfinite(self.values)
-
 
 @dataclass(frozen=True)
 class Photo:
@@ -332,7 +327,7 @@ def paint_about(image: SourceImage, intensity: IntensityImage, rough: RoughPlace
         raise RoadExtractionError(f"The intensity image is {max(sides):.0f} m long; without any position an image is looked for within "
                                   f"{MOST_SEARCHED:.0f} m. Give two points or a world file, or cut the intensity image.")
     paint = _read_paint(intensity, (rough.x - far, rough.y - far, rough.x + far, rough.y + far) if placed else None)
-    if not paint.known.any():
+    if not np.isfinite(paint.values).any():
         raise RoadExtractionError(_no_overlap(image, intensity, rough, sides))
     turns = (rough.turn - rough.turn_range, rough.turn + rough.turn_range)
     sizes = (rough.size / (1.0 + rough.size_range), rough.size * (1.0 + rough.size_range))

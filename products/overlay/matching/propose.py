@@ -41,7 +41,7 @@ def propose_control_points(image: SourceImage, intensity: IntensityImage, rough:
     paint, bounds = paint_about(image, intensity, rough)
     photo = photo_of(image, rough.size, paint.cell)
     progress.report(0.1)
-    x, y = _paint_corners(paint.contrast, paint.known, paint.cell, _CORNERS)
+    x, y = _paint_corners(paint.contrast, np.isfinite(paint.values), paint.cell, _CORNERS)
     if len(x) < LEAST_PAIRS:
         raise RoadExtractionError(f"The intensity image shows {len(x)} corners of paint where {image.path} may lie; {LEAST_PAIRS} are needed. "
                                   "Measure the control points by hand there, at manholes and curbs for example.")
