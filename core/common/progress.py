@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+
+from .setting import table
 
 
-@dataclass(frozen=True)
-class _ProgressWeights:
+@table
+class PROGRESS:
     """The time that remains, as the log says it."""
 
     # s, as reported
@@ -18,9 +19,6 @@ class _ProgressWeights:
     min_fraction: float = 0.08   # of the work that must be done before the first estimate
     longer_factor: float = 1.5   # a longer estimate replaces the last one only if it exceeds it by this factor
     min_repeat: float = 20.0   # s after the last estimate before a longer one may replace it
-
-
-PROGRESS = _ProgressWeights()
 
 
 class Progress:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ..common.setting import table
 
 
-@dataclass(frozen=True)
-class _CorrectionWeights:
+@table
+class CORRECTING:
     """What a correction of an analyst is about, and what it changes."""
 
     step: float = 0.25   # m between the places at which a line is compared with a correction
@@ -22,11 +22,8 @@ class _CorrectionWeights:
     most_lost: float = 0.5   # share of a curve that may be taken away before its elements go with it
 
 
-CORRECTING = _CorrectionWeights()
-
-
-@dataclass(frozen=True)
-class _PickWeights:
+@table
+class PICK:
     """How a curb or a painted line is found about a click. The first four are the click's, the others those of one place across the line."""
 
     click_reach: float = 1.0   # m beside the click within which it is sought: at 1:500 that is 2 mm of the map
@@ -52,6 +49,3 @@ class _PickWeights:
     fewest: int = 5   # points of a flank or of a stripe
     most_points: int = 2_000_000   # of a window that are looked at: every second or third of a dense one tells as much in a part of the time
     noise: float = 0.002   # m, the least scatter of heights: rounding of files
-
-
-PICK = _PickWeights()

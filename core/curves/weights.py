@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..common.setting import table
 
-@dataclass(frozen=True)
-class _FitWeights:
+
+@table
+class FITS:
     """Curves through points: when a fit has converged, and what is worth a more complex curve."""
 
     arc_length_step: float = 0.25   # m between the nodes of the arc length table of curves without a formula for it
@@ -45,6 +45,3 @@ class _FitWeights:
     cost_margin: float = 1.0   # of cost, beyond all rounding
     min_ellipse_turn: float = np.radians(60.0)   # on a shorter arc an ellipse cannot be distinguished from a circle
     heading_base: float = 0.5   # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
-
-
-FITS = _FitWeights()

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..common.setting import table
 
-@dataclass(frozen=True)
-class _AlignmentWeights:
+
+@table
+class ALIGNMENT:
     """The alignment that lanes have in common, their courses and curves."""
 
     max_parallel_deviation: float = 0.06   # m: 95 % of a lane's places are nearer than this to a parallel of the others
@@ -25,11 +27,8 @@ class _AlignmentWeights:
     max_turn: float = np.pi * 0.95   # the tangents of a half circle do not meet
 
 
-ALIGNMENT = _AlignmentWeights()
-
-
-@dataclass(frozen=True)
-class _SigmaWeights:
+@table
+class SIGMA:
     """How uncertain the place of a driving line is."""
 
     border_share: float = 0.13   # of the RMS distance of a border's paint from its curve, that the border is off by
@@ -55,11 +54,8 @@ class _SigmaWeights:
     curvature_window: float = 10.0   # m along the lane, of the RMS of the change of curvature
 
 
-SIGMA = _SigmaWeights()
-
-
-@dataclass(frozen=True)
-class _HeightWeights:
+@table
+class HEIGHTS:
     """Heights of driving lines."""
 
     height_reach: float = 0.3   # m either side of the driving line
@@ -69,11 +65,8 @@ class _HeightWeights:
     height_smoothing_sigma: float = 2.0   # m: a car does not follow a pothole
 
 
-HEIGHTS = _HeightWeights()
-
-
-@dataclass(frozen=True)
-class _AreaWeights:
+@table
+class AREAS:
     """Shoulders and connectors."""
 
     least_shoulder: float = 1.0   # m, median: what is narrower is the marginal strip of the carriageway (0.5 to 0.75 m, RAA)
@@ -82,9 +75,6 @@ class _AreaWeights:
     longest_connector: float = 150.0   # m between the end of a lane and the beginning of the one that the vehicle drove on to
     connector_confidence: float = 0.5   # where the way is known from the drive alone
     driven_on: float = 2.0   # s between two passes of one drive at most: it went on without a stop between them
-
-
-AREAS = _AreaWeights()
 
 
 @dataclass(frozen=True)

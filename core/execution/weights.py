@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ..common.setting import table
 
 
-@dataclass(frozen=True)
-class _ExecutionWeights:
+@table
+class EXECUTION:
     """Who does the work, and how long others are waited for."""
 
     worker_points: int = 5_000_000   # points of the files for each worker: starting takes it a second, a tenth of its time for so many
@@ -32,6 +32,3 @@ class _ExecutionWeights:
     watch_time: float = 2.0   # s between two looks at BEAT
     trial_time: float = 30.0   # s that a trial may take on a busy computer
     longest_note: int = 1 << 24   # bytes; what a run says in a thousand lines is a hundredth of it
-
-
-EXECUTION = _ExecutionWeights()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..common.setting import table
+
 
 @dataclass(frozen=True)
 class _AsphaltWeights:
@@ -30,8 +32,8 @@ class _AsphaltWeights:
 ASPHALT = _AsphaltWeights()
 
 
-@dataclass(frozen=True)
-class _BeamWeights:
+@table
+class BEAMS:
     """The beams of spinning scanners."""
 
     lowest_elevation: float = -45.0   # degrees; elevations of road reach from here to 0
@@ -45,11 +47,8 @@ class _BeamWeights:
     max_turn_time: float = 1.0   # s, the longest turn of a spinning scanner
 
 
-BEAMS = _BeamWeights()
-
-
-@dataclass(frozen=True)
-class _ImageWeights:
+@table
+class IMAGE:
     """The intensity image."""
 
     distance_offset: float = 1e-3   # m added to a distance, so that a point on a cell's centre has a finite weight
@@ -64,6 +63,3 @@ class _ImageWeights:
     max_ranked_points: int = 50_000   # points of a piece whose intensities are ranked; of twice as many an evenly spread share
     state_margin: float = 1.0   # m, more than the sagitta of a bend between two stations as far apart, and than a point reaches
     min_shown_share: float = 0.5   # of the sample_road_points points: must lie on a pixel with a value
-
-
-IMAGE = _ImageWeights()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ..common.setting import table
 
 
-@dataclass(frozen=True)
-class _IoWeights:
+@table
+class IO:
     """Text tables, rasters, coordinate systems and files."""
 
     same_datum: float = 2.0   # m between a place in two realisations of one datum, such as NAD 83 and WGS 84
@@ -28,6 +28,3 @@ class _IoWeights:
     min_number_columns: int = 3   # columns of numbers that make a table
     max_number: float = 1e20   # beyond time in nanoseconds; larger numbers count as missing, like infinity
     fields_per_chunk: int = 200_000   # fields parsed at a time where some are words
-
-
-IO = _IoWeights()

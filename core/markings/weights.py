@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..common.setting import table
+
 
 @dataclass(frozen=True)
 class _TrackWeights:
@@ -54,8 +56,8 @@ class _AsphaltWeights:
 ASPHALT = _AsphaltWeights()
 
 
-@dataclass(frozen=True)
-class _GroupWeights:
+@table
+class GROUPS:
     """Which points belong together."""
 
     road_edge_clearance: float = 0.10   # m: strips so near to the road edge are taken for verge
@@ -63,11 +65,8 @@ class _GroupWeights:
     reach_across_divisor: float = 2.0   # and across it the distance over this, or the reach between tracks of the scan
 
 
-GROUPS = _GroupWeights()
-
-
-@dataclass(frozen=True)
-class _CompoundWeights:
+@table
+class COMPOUNDS:
     """Markings that touch: strips along the road, and bars with the lines that end at them."""
 
     strip_windows: tuple[tuple[float, float], tuple[float, float]] = (8.0, 8.0), (4.0, 5.0)   # m that a line is looked for in, and its least length
@@ -99,11 +98,8 @@ class _CompoundWeights:
     max_side_shift: float = 0.10   # m by which wear has moved an edge that two pieces share
 
 
-COMPOUNDS = _CompoundWeights()
-
-
-@dataclass(frozen=True)
-class _ShapeWeights:
+@table
+class SHAPES:
     """What a cluster looks like."""
 
     middle_line_step_units: int = 5000   # units: 0.5 m of station that the run of a line is followed in
@@ -132,11 +128,8 @@ class _ShapeWeights:
     outline_height_neighbours: int = 8   # points that tell the height of a vertex
 
 
-SHAPES = _ShapeWeights()
-
-
-@dataclass(frozen=True)
-class _ZigzagWeights:
+@table
+class ZIGZAG:
     """Zigzag lines (see the standards in `objects/shape.py`)."""
 
     step_cells: int = 3   # cells along the road whose middle is one place: 12 cm
@@ -155,11 +148,8 @@ class _ZigzagWeights:
     least_off_straight: float = 0.05   # m
 
 
-ZIGZAG = _ZigzagWeights()
-
-
-@dataclass(frozen=True)
-class _StripeWeights:
+@table
+class STRIPES:
     """Stripes of zebra crossings."""
 
     stripe_width: tuple[float, float] = (0.25, 0.80)   # m
@@ -199,11 +189,8 @@ class _StripeWeights:
     most_peaks: int = 2   # of them, the clearest, that are looked at closely: a line beside a crossing may repeat more clearly than its stripes
 
 
-STRIPES = _StripeWeights()
-
-
-@dataclass(frozen=True)
-class _FigureWeights:
+@table
+class FIGURES:
     """Bicycles and words, compared with drawn figures."""
 
     figure_size: tuple[float, float] = 0.6, 5.0   # m along and across of a figure
@@ -224,11 +211,8 @@ class _FigureWeights:
     steps: tuple[float, float, float] = 0.10, 0.05, 0.025   # of its size that a figure is moved and stretched by, and radians that it is turned by
 
 
-FIGURES = _FigureWeights()
-
-
-@dataclass(frozen=True)
-class _StrandWeights:
+@table
+class STRANDS:
     """Stretches of one painted line without a gap, and the edges of the road beside them."""
 
     run_bin_units: int = 5000   # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
@@ -263,11 +247,8 @@ class _StrandWeights:
     max_quadric_condition: float = 1e3   # condition number of the normal equations of the quadric
 
 
-STRANDS = _StrandWeights()
-
-
-@dataclass(frozen=True)
-class _LinkWeights:
+@table
+class LINKS:
     """Strands linked along the road."""
 
     end_window: float = 6.0   # m of a strand's end that say where it goes
@@ -282,11 +263,8 @@ class _LinkWeights:
     cost_without_link: float = 2.01   # the worst possible link costs 1 for its mismatch and 1 for its gap
 
 
-LINKS = _LinkWeights()
-
-
-@dataclass(frozen=True)
-class _TrendWeights:
+@table
+class TREND:
     """How all painted lines of a road change their offset together."""
 
     trend_step: float = 0.5   # m, nodes of the drift
@@ -305,11 +283,8 @@ class _TrendWeights:
     shortest_unseen: float = 0.5   # m: less is nothing to draw
 
 
-TREND = _TrendWeights()
-
-
-@dataclass(frozen=True)
-class _SelectionWeights:
+@table
+class SELECTION:
     """Which linked paint is a line."""
 
     min_shared_paint: float = 0.6   # of a line's paint that must have its twin beside it in a double line
@@ -333,11 +308,8 @@ class _SelectionWeights:
     max_solid_gap: float = 2.5   # m: a longer hole in a solid line is bridged, not measured
 
 
-SELECTION = _SelectionWeights()
-
-
-@dataclass(frozen=True)
-class _SectionWeights:
+@table
+class SECTIONS:
     """Lines as offsets at common stations."""
 
     max_line_obliquity: float = np.tan(np.radians(25.0))   # a line that runs more across the road than this bounds no lane
@@ -348,11 +320,8 @@ class _SectionWeights:
     max_dash_gap: float = 9.5   # m that a dashed line may be silent at its ends before it is known to end
 
 
-SECTIONS = _SectionWeights()
-
-
-@dataclass(frozen=True)
-class _EvidenceWeights:
+@table
+class EVIDENCE:
     """The drive, other carriageways and stop lines as evidence of lanes."""
 
     carriageway_distance: float = 40.0   # m between the tracks on two carriageways of one road at most
@@ -370,11 +339,8 @@ class _EvidenceWeights:
     border_line_reach: float = 0.5   # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
 
 
-EVIDENCE = _EvidenceWeights()
-
-
-@dataclass(frozen=True)
-class _RoadWeights:
+@table
+class ROADS:
     """What all roads of a survey have in common."""
 
     shortest_bare: float = 20.0   # m driven between two borders beyond all paint: less is where paint or survey just ends
@@ -387,11 +353,8 @@ class _RoadWeights:
     sure_lean: float = 0.15   # of the length by which the shaft is longer than the tip where it is sure which is which; painted arrows: 0.15 to 0.5
 
 
-ROADS = _RoadWeights()
-
-
-@dataclass(frozen=True)
-class _NoisyWeights:
+@table
+class NOISY:
     """Paint where single points are noisy: first their averages.
 
     The nats are rounded from a logistic regression of what bright pieces measure on a real street with paint and one without, judged by eye, and
@@ -450,11 +413,8 @@ class _NoisyWeights:
     per_cover: float = 9.0   # times the share of points beneath an object
 
 
-NOISY = _NoisyWeights()
-
-
-@dataclass(frozen=True)
-class _RimWeights:
+@table
+class RIMS:
     """What is bright at the rims of roads and no paint: first concrete gutters, and what is left of worn lines."""
 
     worn_gap: float = 0.80   # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
@@ -480,11 +440,8 @@ class _RimWeights:
     min_squares_of_spread: int = 30   # squares of asphalt in a window that tell how far they lie off their planes
 
 
-RIMS = _RimWeights()
-
-
-@dataclass(frozen=True)
-class _ClassWeights:
+@table
+class CLASSES:
     """What kind of marking a cluster is. First its contrast: seams, joints of bridges and gutters of islands are far paler than paint beside them."""
 
     contrast_stretch: float = 100.0   # m of road, with as much before and after it, whose paint is compared
@@ -528,11 +485,8 @@ class _ClassWeights:
     edge_line_length_ratio: float = 2.0   # an edge line is so many times as long as the strips outside it
 
 
-CLASSES = _ClassWeights()
-
-
-@dataclass(frozen=True)
-class _RowWeights:
+@table
+class ROWS:
     """What stands in rows: first dashes."""
 
     min_dash_spacing: float = 0.25   # m between them at least
@@ -568,11 +522,8 @@ class _RowWeights:
     max_row_slope: float = 0.5   # to the road: of a row more oblique the blocks do not touch
 
 
-ROWS = _RowWeights()
-
-
-@dataclass(frozen=True)
-class _LaneWeights:
+@table
+class LANES:
     """What may bound lanes, and how they lie between two boundaries."""
 
     max_interval: int = 4   # cells: longer intervals are divided
@@ -595,17 +546,11 @@ class _LaneWeights:
     same_divider: int = 1   # places by which the same border between lanes may lie elsewhere
 
 
-LANES = _LaneWeights()
-
-
-@dataclass(frozen=True)
-class _OutlierWeights:
+@table
+class OUTLIERS:
     """Outliers among the points of paint."""
 
     window: float = 20.0   # m of station that one limit is taken from
     band: float = 3.0   # m of offset likewise
     min_points_per_band: int = 30   # points of a window whose deviation is still reliable
     sparseness_factor: float = 3.0   # times the distance that is usual among a point's own neighbours
-
-
-OUTLIERS = _OutlierWeights()

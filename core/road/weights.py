@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..common.setting import table
+
 Arcs = tuple[tuple[float, ...], ...]   # shifts (m), turns (radians) and bends (1/m)
 
 
-@dataclass(frozen=True)
-class _CurbWeights:
+@table
+class CURBS:
     """How steps are told from noise, linked to curbs and chosen along a road, whatever method finds them."""
 
     # corners of curbs
@@ -159,11 +161,8 @@ class _CurbWeights:
     min_piece_steps: int = 3   # steps, of a piece
 
 
-CURBS = _CurbWeights()
-
-
-@dataclass(frozen=True)
-class _ProfileWeights:
+@table
+class PROFILE:
     """How steps are found on profiles."""
 
     min_track_distance: float = 0.6   # m from the track: no curb is nearer
@@ -186,11 +185,8 @@ class _ProfileWeights:
     max_network_rows: int = 9   # profiles that are sorted element by element; for more, numpy's sort is faster
 
 
-PROFILE = _ProfileWeights()
-
-
-@dataclass(frozen=True)
-class _ScanlineWeights:
+@table
+class SCANLINE:
     """How scan lines are laid and corners of curbs found on them."""
 
     # candidates
@@ -268,11 +264,8 @@ class _ScanlineWeights:
     min_slice_length: float = 0.20   # m along the road: thinner slices may lie between two turns of a scanner
 
 
-SCANLINE = _ScanlineWeights()
-
-
-@dataclass(frozen=True)
-class _ReturnWeights:
+@table
+class RETURN:
     """How curbs are found in plan: corners, side streets, islands."""
 
     # classes
@@ -466,9 +459,6 @@ class _ReturnWeights:
     max_join_overlap: float = 0.3   # m that two such chains may overlap, and
 
 
-RETURN = _ReturnWeights()
-
-
 @dataclass(frozen=True)
 class EdgeUncertainty:
     """The shares of an edge's uncertainty.
@@ -490,8 +480,8 @@ class EdgeUncertainty:
     bridge: float = 2e-5
 
 
-@dataclass(frozen=True)
-class _EdgeWeights:
+@table
+class EDGE:
     """How lines are led through curb points."""
 
     # curb returns
@@ -540,11 +530,8 @@ class _EdgeWeights:
     curb_return: EdgeUncertainty = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
-EDGE = _EdgeWeights()
-
-
-@dataclass(frozen=True)
-class _SurfaceWeights:
+@table
+class SURFACE:
     """Where the road ends and what belongs to its surface."""
 
     # surface
@@ -704,11 +691,8 @@ class _SurfaceWeights:
     min_surface_status_length: float = 5.0   # m: shorter changes of status are not drawn
 
 
-SURFACE = _SurfaceWeights()
-
-
-@dataclass(frozen=True)
-class _BoundaryWeights:
+@table
+class BOUNDARY:
     """How two methods are compared."""
 
     # shares of the work
@@ -720,6 +704,3 @@ class _BoundaryWeights:
     min_reported_difference: float = 0.05   # m across above which a stretch is reported
     agreement_quantile: float = 0.95   # quantile of the distances that stands for a piece
     min_reported_length: float = 1.0   # m of a stretch that is reported
-
-
-BOUNDARY = _BoundaryWeights()
