@@ -31,7 +31,6 @@ class Algorithm:
     """
 
     ID = TITLE = GROUP = ""
-    LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
     NUMBERS = ()  # names of numbers among the results
     RETIRED = ()  # names of parameters of an earlier version, which are accepted and have no effect
     WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
@@ -83,9 +82,8 @@ class Algorithm:
     def _words(self, name, settings=""):
         """The paragraphs of help.txt for a parameter or number: its label, then its help."""
         texts = help_texts()
-        common = texts.get(name) or [MAP_LAYERS[name].label] if name in (*texts, *MAP_LAYERS) else []
         return (texts.get(f"{self.ID} {name}") or texts.get(f"{settings.partition(':')[2]} {name}")
-                or [*common, *texts.get(f"{self.ID} + {name}", [])])
+                or [*texts.get(name, []), *texts.get(f"{self.ID} + {name}", [])])
 
     def add_input(self, kind, name, **more):
         """Add an input of a kind; `more` are further attributes of ParameterSpec."""
@@ -95,20 +93,14 @@ class Algorithm:
         """Add a layer of the road map as an input."""
         self.add_input("layer", name, geometry=MAP_LAYERS[name].geometry, **more)
 
-    def add_survey(self, trajectory_optional=False, without=""):
-        """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
-        self.add_point_clouds()
-        self.add_trajectory(trajectory_optional, without)
-        self.add_crs()
-
-    def add_point_clouds(self):
+    def add_survey(self, trajectory_optional=False):
+        """Point clouds, trajectory and the CRS for clouds that carry none."""
         self.add_input("clouds", "POINT_CLOUDS")
-
-    def add_trajectory(self, optional=False, without=""):
-        self.add_input("trajectory", "TRAJECTORY", help=tr(without) if without else "", optional=optional)
-
-    def add_crs(self):
+        self.add_trajectory(trajectory_optional)
         self.add_input("crs", "CRS", optional=True, advanced=True)
+
+    def add_trajectory(self, optional=False):
+        self.add_input("trajectory", "TRAJECTORY", optional=optional)
 
     def add_settings(self, specs, only=None, advanced=None):
         """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""
@@ -174,6 +166,7 @@ class OutputSpec(ParameterSpec):
     """A result, of the kind layer, cloud (LAZ or LAS), raster (GeoTIFF), report (HTML), file, or folder (for several files)."""
 
     by_default: bool = True   # a dialog makes it unless told otherwise
+    look: str = ""   # the result whose map style it has, where that is not its own name
     schema: tuple = ()   # fields of a layer, empty where they are not fixed
     suffixes: tuple = ()   # the endings that a file may have; the first of its `file_filter` is the default
 

@@ -13,17 +13,9 @@ from .texts import tr
 NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
 
 
-def add_excluded(algorithm):
-    algorithm.add_input("expression", "EXCLUDED", optional=True, advanced=True, default="", of="REFERENCE")
-
-
-def add_area(algorithm):
-    algorithm.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
-
-
-def add_tolerances(algorithm, settings):
-    """The list of tolerances as text: a model can hand it on, and any number of them will do. `settings` names the class, as in SettingSpec."""
-    owner = settings_class(settings)
+def add_tolerances(algorithm, specs):
+    """The list of tolerances as text: a model can hand it on, and any number of them will do. `specs` are settings of its class."""
+    owner = settings_class(specs[0].settings)
     if owner is not None:
         algorithm.add_input("text", "TOLERANCES", default=", ".join(f"{number:g}" for number in owner().tolerances))
 
@@ -140,15 +132,11 @@ def shares_of(numbers, names):
     return ", ".join(shares)
 
 
-BOUNDARY = "products.assess.lines:BoundaryAccuracySettings"
-
-EDGES = ("automatic", "all", "curbs")
-BOUNDARY_SETTINGS = settings_of(BOUNDARY, "TOLERANCE INTERVAL* CORRIDOR*")
+BOUNDARY_SETTINGS = settings_of("products.assess.lines:BoundaryAccuracySettings", "TOLERANCE INTERVAL* CORRIDOR*")
 
 
 class AssessBoundaries(Algorithm):
     ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = ("PRECISION RECALL F1 IOU CORRECT MISSED FALSE EXCLUDED_INTERVALS MEAN RMSE P95 MAXIMUM HEIGHT_MEAN HEIGHT_RMSE HEIGHT_P95 "
                "HEIGHT_MAXIMUM PRECISION_LEFT RECALL_LEFT F1_LEFT PRECISION_RIGHT RECALL_RIGHT F1_RIGHT").split()
 
@@ -156,12 +144,12 @@ class AssessBoundaries(Algorithm):
         self.add_input("layer", "INPUT", geometry="LineStringZ")
         self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, BOUNDARY)
+        add_tolerances(self, BOUNDARY_SETTINGS)
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_input("choice", "EDGES", default=EDGES[0], choices=EDGES)
-        add_excluded(self)
-        add_area(self)
-        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ")
+        self.add_input("choice", "EDGES", default="automatic", choices=("automatic", "all", "curbs"))
+        self.add_input("expression", "EXCLUDED", optional=True, advanced=True, default="", of="REFERENCE")
+        self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
+        self.add_sink("OUTPUT", fields=ASSESSED_BOUNDARIES, geometry="MultiLineStringZ", look="ASSESSED_LINES")
         self.add_report()
 
     def work(self, call, progress):
@@ -216,14 +204,11 @@ def _errors(errors, before=""):
     return {f"{before}{name.upper()}": getattr(errors, name) for name in ("mean", "rmse", "p95", "maximum")}
 
 
-MARKINGS = "products.assess.markings:MarkingAccuracySettings"
-
-MARKING_SETTINGS = settings_of(MARKINGS, "TOLERANCE CELL_SIZE* LINE_WIDTH*")
+MARKING_SETTINGS = settings_of("products.assess.markings:MarkingAccuracySettings", "TOLERANCE CELL_SIZE* LINE_WIDTH*")
 
 
 class AssessMarkings(Algorithm):
     ID, TITLE, GROUP = "assessmarkings", "Assess markings", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_POLYGONS", "CELLS": "ASSESSED_CELLS"}
     NUMBERS = ("PRECISION RECALL F1 IOU PRECISION_TOLERANT RECALL_TOLERANT F1_TOLERANT OBJECT_PRECISION OBJECT_RECALL OBJECT_F1 HITS MISSES "
                "FALSE_ALARMS").split()
     RETIRED = ("FOUND_SHARE",)
@@ -232,13 +217,13 @@ class AssessMarkings(Algorithm):
         self.add_input("painted", "INPUT")
         self.add_input("painted", "REFERENCE")
         self.add_trajectory(optional=True)
-        add_tolerances(self, MARKINGS)
+        add_tolerances(self, MARKING_SETTINGS)
         self.add_settings(MARKING_SETTINGS)
         self.add_input("text", "CLASS_FIELD", optional=True, advanced=True, default="class")
-        add_area(self)
+        self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
         self.add_input("raster", "IMAGE", optional=True)
-        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ")
-        self.add_output("raster", "CELLS", optional=True, by_default=False)
+        self.add_sink("OUTPUT", fields=ASSESSED_MARKINGS, geometry="MultiPolygonZ", look="ASSESSED_POLYGONS")
+        self.add_output("raster", "CELLS", optional=True, by_default=False, look="ASSESSED_CELLS")
         self.add_report()
 
     def work(self, call, progress):
@@ -284,15 +269,11 @@ def _marking_numbers(accuracy):
             **_shares(accuracy.objects, before="OBJECT_"), "HITS": strict.right, "MISSES": strict.missed, "FALSE_ALARMS": strict.false}
 
 
-LINES = "products.assess.lines:LineAccuracySettings"
-WIDTHS = ("half-width", "total-width")
-
-LINE_SETTINGS = settings_of(LINES, "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
+LINE_SETTINGS = settings_of("products.assess.lines:LineAccuracySettings", "TOLERANCE MAX_ANGLE*", TOLERANCE=dict(times=2.0))
 
 
 class AssessDrivingLines(Algorithm):
     ID, TITLE, GROUP = "assessdrivinglines", "Assess driving lines", "Assessment"
-    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
     NUMBERS = ("COMPLETENESS CORRECTNESS QUALITY MISCODING PRECISION RECALL F1 MEAN RMSE P95 MAXIMUM HEIGHT_RMSE GAPS_PER_KM MEAN_GAP "
                "RESULT_LENGTH REFERENCE_LENGTH").split()
 
@@ -300,11 +281,11 @@ class AssessDrivingLines(Algorithm):
         self.add_input("layer", "INPUT", geometry="LineStringZ")
         self.add_input("layer", "REFERENCE", geometry="LineStringZ")
         self.add_trajectory(optional=True)
-        add_tolerances(self, LINES)
-        self.add_input("choice", "WIDTH", default=WIDTHS[0], choices=WIDTHS)
+        add_tolerances(self, LINE_SETTINGS)
+        self.add_input("choice", "WIDTH", default="half-width", choices=("half-width", "total-width"))
         self.add_settings(LINE_SETTINGS)
-        add_area(self)
-        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ")
+        self.add_input("layer", "AREA", geometry="PolygonZ", optional=True)
+        self.add_sink("OUTPUT", fields=ASSESSED_DRIVING_LINES, geometry="MultiLineStringZ", look="ASSESSED_LINES")
         self.add_report()
 
     def work(self, call, progress):
@@ -338,7 +319,7 @@ class AssessDrivingLines(Algorithm):
         share = 0.5 if call.value("WIDTH") == "total-width" else 1.0
         values = {spec.field: call.value(spec.name) for spec in LINE_SETTINGS}
         widths = tuple(share * width for width in tolerances(call))
-        return replace(settings_class(LINES)(), **(values | {"tolerance": share * values["tolerance"], "tolerances": widths}))
+        return replace(settings_class(LINE_SETTINGS[0].settings)(), **(values | {"tolerance": share * values["tolerance"], "tolerances": widths}))
 
 
 def _line_numbers(accuracy, tolerance):

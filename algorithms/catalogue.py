@@ -1,9 +1,9 @@
 """Every algorithm, in the order of the work."""
 
-from . import assess, client, cloud, driving, export, inventory, markings, overlay, road, survey
+from . import assess, driving, export, inventory, markings, overlay, road, survey
 from .algorithm import GROUPS, Algorithm
 
-MODULES = (survey, road, markings, driving, export, client, cloud, inventory, assess, overlay)
+MODULES = (survey, road, markings, driving, export, inventory, assess, overlay)
 ALGORITHMS = tuple(value for module in MODULES for value in vars(module).values()
                    if isinstance(value, type) and issubclass(value, Algorithm) and value.__module__ == module.__name__)
 

@@ -165,7 +165,10 @@ def _give_place(folder, destination):
     """
     statistics = folder / f"{destination.name}.aux.xml"   # GDAL's, of an image
     parts = sorted({*folder.iterdir()} - {statistics}, key=lambda part: part.name == destination.name)
-    previous = files_of(destination)
+    # the files there are of it: those of one stem for a shapefile, a database's journals for a GeoPackage
+    names = [destination.with_suffix(suffix) for suffix in SHAPEFILE] if destination.suffix.lower() == ".shp" else \
+        [destination.with_name(destination.name + suffix) for suffix in ("", "-wal", "-shm", "-journal")]
+    previous = [file for file in names if file.is_file()]
     if destination in previous and len(previous) > 1 and destination.suffix.lower() != ".shp":
         with _opened(destination) as database:   # what its journal holds goes into it: one that outlives its database is played into the next
             database.execute("SELECT count(*) FROM sqlite_master").fetchone()
@@ -198,10 +201,3 @@ def _opened(path):
         raise RoadExtractionError(
             tr("{path} cannot be written: {reason}. Close the program that holds it, or choose another file.").format(path=path, reason=problem)
         ) from problem
-
-
-def files_of(path):
-    """The files there are of a layer: those of one stem for a shapefile, a database's journals for a GeoPackage."""
-    parts = [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
-        [path.with_name(path.name + suffix) for suffix in ("", "-wal", "-shm", "-journal")]
-    return [file for file in parts if file.is_file()]

@@ -13,18 +13,7 @@ from .algorithm import Algorithm, settings_of
 from .map_layers import MAP_LAYERS
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
 from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
-from .survey_input import (
-    SURVEY_SETTINGS,
-    WITHOUT_TRAJECTORY,
-    add_corrections,
-    add_execution,
-    corrections_of,
-    estimated_trajectory,
-    execution_of,
-    frame_of,
-    road_points_of,
-    survey_inputs,
-)
+from .survey_input import SURVEY_SETTINGS, add_execution, corrections_of, estimated_trajectory, execution_of, frame_of, road_points_of, survey_inputs
 from .texts import tr
 
 if TYPE_CHECKING:
@@ -140,7 +129,7 @@ class RoadMap(Algorithm):
 
     def declare(self):
         # the dialog shows clouds, trajectory and where to save; all else is folded away, in the order of the stages
-        self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
+        self.add_survey(trajectory_optional=True)
         self.add_settings(METHOD_SETTING, advanced=True)
         for stage, specs in STAGES.items():
             if stage == "intensity":
@@ -149,7 +138,7 @@ class RoadMap(Algorithm):
             if stage == "image":
                 self.add_settings((MARKING_METHOD,), advanced=True)
         self.add_settings(SURVEY_SETTINGS)
-        add_corrections(self)
+        self.add_input("layer", "CORRECTIONS", optional=True, advanced=True)
         add_execution(self)
         for name in LAYERS:
             self.add_map_sink(name, optional=True)

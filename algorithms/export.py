@@ -11,11 +11,10 @@ from ..core.lazy import shapely
 from .algorithm import Algorithm, settings_of
 from .call import existing_file
 from .map_layers import MAP_LAYERS
-from .survey_input import road_points_of
+from .survey_input import READING_SETTINGS, open_survey_with, road_points_of
 from .texts import languages, told, tr
 
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
-MAP_NUMBERS = "LANE_COUNT LENGTH".split()
 
 
 def add_map_layers(algorithm):
@@ -89,10 +88,6 @@ def add_road_map_layers(algorithm):
     algorithm.add_input("cloud", "ROAD_POINTS", optional=True)
 
 
-def add_signals(algorithm):
-    algorithm.add_map_layer("SIGNALS", optional=True)
-
-
 def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
     from ..core.driving.layers import Lanes
@@ -137,7 +132,6 @@ ATTRIBUTE_SETTINGS = settings_of("products.export.road_attributes:AttributeSetti
 
 class RoadAttributes(Algorithm):
     ID, TITLE, GROUP = "roadattributes", "Attributes of OpenStreetMap", "Export"
-    LOOKS = {"OUTPUT": "LANES"}
     NUMBERS = "LANE_COUNT KNOWN SPEEDS NAMES".split()
 
     def declare(self):
@@ -145,7 +139,7 @@ class RoadAttributes(Algorithm):
         self.add_input("file", "OSM_FILE", optional=True, file_filter="OpenStreetMap (*.osm *.OSM *.xml);;All files (*.*)")
         self.add_input("layer", "WAYS", optional=True)
         self.add_settings(ATTRIBUTE_SETTINGS)
-        self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ")
+        self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", look="LANES")
 
     def work(self, call, progress):
         from ..core.driving.layers import Lanes
@@ -191,15 +185,14 @@ def _ways_of_layer(source, crs):
 
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
-VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
 ROAD_SETTINGS = settings_of(ROADS, "TOLERANCE")
 
 
 def add_road_choices(algorithm):
     """How OpenDRIVE is written."""
-    algorithm.add_input("choice", "VERSION", default=VERSIONS[0], choices=VERSIONS)
+    algorithm.add_input("choice", "VERSION", default="1.7", choices=("1.7", "1.8"))
     algorithm.add_settings(ROAD_SETTINGS)
-    algorithm.add_input("choice", "TRAFFIC_SIDE", default=SIDES[0], choices=SIDES)
+    algorithm.add_input("choice", "TRAFFIC_SIDE", default="automatic", choices=("automatic", "right", "left"))
 
 
 class ExportOpenDrive(Algorithm):
@@ -209,7 +202,7 @@ class ExportOpenDrive(Algorithm):
     def declare(self):
         add_road_map_layers(self)
         add_road_choices(self)
-        add_signals(self)
+        self.add_map_layer("SIGNALS", optional=True)
         self.add_output("file", "OUTPUT", suffixes=(".xodr",), file_filter="OpenDRIVE (*.xodr)")
         self.add_report()
 
@@ -276,15 +269,13 @@ def _report(name, whole, network, shown, misses, notes):
     return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(network), notes, shown)
 
 
-LANELETS = "products.export.lanelet_export:LaneletSettings"
-LOCATIONS = ("urban", "nonurban")
-LANELET_SETTINGS = settings_of(LANELETS, "SPEED_LIMIT")
+LANELET_SETTINGS = settings_of("products.export.lanelet_export:LaneletSettings", "SPEED_LIMIT")
 
 
 def add_lanelet_choices(algorithm):
     """How Lanelet2 is written."""
     algorithm.add_settings(LANELET_SETTINGS)
-    algorithm.add_input("choice", "LOCATION", default=LOCATIONS[0], choices=LOCATIONS)
+    algorithm.add_input("choice", "LOCATION", default="urban", choices=("urban", "nonurban"))
     algorithm.add_input("flag", "LOCAL_COORDINATES", default=False)
 
 
@@ -295,7 +286,7 @@ class ExportLanelet2(Algorithm):
     def declare(self):
         add_road_map_layers(self)
         add_lanelet_choices(self)
-        add_signals(self)
+        self.add_map_layer("SIGNALS", optional=True)
         self.add_output("file", "OUTPUT", suffixes=(".osm",), file_filter="Lanelet2 (*.osm)")
         self.add_report()
 
@@ -457,7 +448,7 @@ class PrintSheets(Algorithm):
 
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
-    NUMBERS = MAP_NUMBERS
+    NUMBERS = "LANE_COUNT LENGTH".split()
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
@@ -469,7 +460,7 @@ class ImportOpenDrive(Algorithm):
 
 class ImportLanelet2(Algorithm):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    NUMBERS = MAP_NUMBERS
+    NUMBERS = "LANE_COUNT LENGTH".split()
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
@@ -510,12 +501,11 @@ ROWS_IN_LOG, PLACES_IN_LOG = 50, 3   # of findings that the log tells, and of th
 
 class CheckMap(Algorithm):
     ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
-    LOOKS = {"OUTPUT": "FINDINGS"}
     NUMBERS = "FINDINGS FAULTS LANES SUCCESSORS NEIGHBOURS".split()
 
     def declare(self):
         add_any_map(self)
-        self.add_sink("OUTPUT", fields=MAP_FINDINGS, geometry="PointZ")
+        self.add_sink("OUTPUT", fields=MAP_FINDINGS, geometry="PointZ", look="FINDINGS")
         self.add_report()
 
     def work(self, call, progress):
@@ -556,3 +546,132 @@ def _is_lanelet2(path):
         raise RoadExtractionError(
             tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
     return b"<osm" in head
+
+
+# The road map under the names, codes and fields of whoever ordered it.
+
+# Parameters, which are the names of the layers in a template
+TEMPLATE_LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "ROADSIDE", "ROADSIDE_OBJECTS",
+                   "CROSS_SECTIONS")
+
+
+class ExportTemplate(Algorithm):
+    ID, TITLE, GROUP = "exporttemplate", "Export by template", "Export"
+    NUMBERS = "FEATURES LAYERS LEFT_OUT".split()
+
+    def declare(self):
+        self.add_input("file", "TEMPLATE", file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
+        for name in TEMPLATE_LAYERS:
+            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
+        self.add_input("file", "OFFICE", optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
+        self.add_input("connection", "CONNECTION", optional=True)
+        self.add_input("schema", "SCHEMA", optional=True, of="CONNECTION")
+        self.add_output("file", "OUTPUT", optional=True, suffixes=(".gpkg", ".dxf"), file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
+
+    def work(self, call, progress):
+        from ..core.io.crs import parse_crs, same_crs
+        from ..products.client_fields import Database, apply_template, layers_of_client, read_template, write_client_layers
+
+        schema = call.value("SCHEMA") or ""
+        if bool(schema) != call.given("CONNECTION") or not (schema or call.wants("OUTPUT")):
+            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
+                output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
+        database = Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
+        drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
+        office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
+        if drawing and office:
+            raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
+        known = {name: (MAP_LAYERS[name].schema, MAP_LAYERS[name].geometry) for name in TEMPLATE_LAYERS}
+        template = read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
+        layers = {name: call.features(name, [replace(field, needed=False) for field in schema], geometry)
+                  for name, (schema, geometry) in known.items() if call.given(name)}
+        if not layers:
+            raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
+        for name in sorted({rule.source for rule in template.rules} - set(layers)):
+            progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
+        crs = next((features.crs for features in layers.values() if features.crs), "")
+        for name, features in layers.items():
+            if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
+                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
+                    label=call.label(name)))
+        made = apply_template(template, layers, layers_of_client(office, crs, template) if office else None)
+        stored = apply_template(template, layers, layers_of_client(database, crs, template), whole=False).layers if database else {}
+        if drawing:
+            from ..products.cad import drawn_layers, write_dxf
+
+            write_dxf(drawn_layers(made.layers), call.new_file("OUTPUT"), crs)
+        elif call.wants("OUTPUT"):
+            write_client_layers(made.layers, call.new_file("OUTPUT"), office)
+        if database:
+            write_client_layers(stored, database)
+        for name, features in made.layers.items():
+            progress.info(tr("{name}: {count:,} features").format(name=name, count=len(features)))
+        for what, count in sorted(made.left_out.items()):
+            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.").format(count=count, what=what))
+        return {"FEATURES": float(sum(map(len, made.layers.values()))), "LAYERS": float(len(made.layers)),
+                "LEFT_OUT": float(sum(made.left_out.values()))}
+
+
+# The survey's own point clouds, given back with classes and the fields of the road.
+
+CLOUD_SETTINGS = settings_of("products.cloud.classify:CloudSettings", "GROUND_THICKNESS CURB_WIDTH REACH_BESIDE",
+    GROUND_THICKNESS=dict(field="ground"), CURB_WIDTH=dict(field="curb"), REACH_BESIDE=dict(field="beside"))
+# parameter -> the fields that are read; in the order of CloudLayers
+CLOUD_LAYERS = {"ROAD_SURFACE": "road station_m", "ROAD_EDGES": "road station_m height_m edge", "MARKINGS": "road station_m",
+                "ROADSIDE": "road station_m kind height_m", "ROADSIDE_OBJECTS": "road station_m kind height_m diam_m"}
+
+
+class ClassifyCloud(Algorithm):
+    ID, TITLE, GROUP = "classifycloud", "Classify point cloud", "Export"
+    NUMBERS = "FILES POINTS ROAD_POINTS PAINT_POINTS CURB_POINTS".split()
+
+    def declare(self):
+        self.add_survey()
+        for name in CLOUD_LAYERS:
+            self.add_map_layer(name, optional=True)
+        self.add_settings(CLOUD_SETTINGS, advanced=True)
+        self.add_settings(READING_SETTINGS)
+        self.add_output("folder", "OUTPUT")
+        self.add_output("folder", "UNROLLED", optional=True, by_default=False)
+
+    def work(self, call, progress):
+        from ..core.survey.las.point_fields import in_one_scale, intensity_source_of
+        from ..core.survey.las.reader import read_headers
+        from ..core.survey.las.samples import sample_files
+        from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
+        from ..products.cloud.rewrite import classified_copy
+
+        files = read_headers(call.point_clouds(), given=call.crs())
+        copies = _copies(call, files, progress)
+        # what was drawn by hand has no station
+        layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
+                                             if field.name in read.split()], MAP_LAYERS[name].geometry)
+                  for name, read in CLOUD_LAYERS.items()}
+        survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
+        samples = sample_files(files)
+        intensity = intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]
+        files, _ = in_one_scale(files, samples, call.value("INTENSITY_FROM"))
+        classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
+        total, done, counts = sum(file.count for file in files), 0, Counter()
+        for file, copy in zip(files, copies):
+            part = progress.part(0.4 + 0.6 * done / total, 0.4 + 0.6 * (done + file.count) / total)
+            counts.update(classified_copy(file, classifier, *copy, part))
+            done += file.count
+        for number, count in sorted(counts.items()):
+            name = PointClass(number).name.lower().replace("_", " ") if number in set(PointClass) else ""
+            progress.info(tr("Class {number} {name}: {count:,} points").format(number=number, name=name, count=count))
+        return {"FILES": float(len(files)), "POINTS": float(done), "ROAD_POINTS": float(counts[PointClass.ROAD_SURFACE]),
+                "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
+
+
+def _copies(call, files, progress):
+    """(path, path of the unrolled copy) for each of the files, whose names must differ."""
+    names = [Path(file.path).name for file in files]
+    plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
+    twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)
+    if twice:
+        raise RoadExtractionError(
+            tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
+    if plain != names:
+        progress.info(tr("COPC files are written as LAZ: their octree is not kept. QGIS makes a COPC of a LAZ by Create COPC."))
+    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in plain]

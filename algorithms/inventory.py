@@ -29,16 +29,14 @@ def survey_with_borders(call, progress, above_road):
     return survey, BorderLayers(*layers.values())
 
 
-SECTIONS = "products.inventory.borders:CrossSectionSettings"
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
-SECTION_SETTINGS = settings_of(SECTIONS, "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*",
-    COUNTRY=dict(choices=tuple(COUNTRIES)))
+SECTION_SETTINGS = settings_of("products.inventory.borders:CrossSectionSettings",
+    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*", COUNTRY=dict(choices=tuple(COUNTRIES)))
 
 
 class CrossSections(Algorithm):
     ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
-    LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
     NUMBERS = "SECTIONS EXCEEDED LARGEST_RUT LEAST_CLEARANCE".split()
 
     def declare(self):
@@ -46,7 +44,7 @@ class CrossSections(Algorithm):
         add_borders(self)
         self.add_settings(SECTION_SETTINGS)
         self.add_settings(READING_SETTINGS)
-        self.add_sink("OUTPUT", fields=CROSS_SECTIONS, geometry="LineStringZ")
+        self.add_sink("OUTPUT", fields=CROSS_SECTIONS, geometry="LineStringZ", look="CROSS_SECTIONS")
         self.add_sink("TABLE", fields=CROSS_SECTIONS, geometry="None", optional=True, by_default=False)
         self.add_output("file", "DRAWING", suffixes=(".dxf",), file_filter="DXF (*.dxf)", optional=True, by_default=False)
         self.add_output("file", "LANDXML", suffixes=(".xml", ".landxml"), file_filter="LandXML (*.xml *.landxml)", optional=True, by_default=False)
@@ -137,7 +135,6 @@ ROADSIDE_SETTINGS = settings_of("products.inventory.borders:RoadsideSettings",
 
 class Roadside(Algorithm):
     ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
-    LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
     NUMBERS = "LENGTH POLES".split()
 
     def declare(self):
@@ -145,8 +142,8 @@ class Roadside(Algorithm):
         add_borders(self)
         self.add_settings(ROADSIDE_SETTINGS)
         self.add_settings(READING_SETTINGS)
-        self.add_sink("OUTPUT", fields=ROADSIDE, geometry="LineStringZ")
-        self.add_sink("OBJECTS", fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
+        self.add_sink("OUTPUT", fields=ROADSIDE, geometry="LineStringZ", look="ROADSIDE")
+        self.add_sink("OBJECTS", fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True, look="ROADSIDE_OBJECTS")
         self.add_report()
 
     def work(self, call, progress):

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..core.common import features
-from .texts import tr
+from .texts import help_texts
 
 
 class MapLayer(NamedTuple):
@@ -14,19 +14,7 @@ class MapLayer(NamedTuple):
     geometry: str
 
 
-MAP_LAYERS = {name: MapLayer(label, getattr(features, name), geometry) for name, label, geometry in (
-    ("SCANLINES", tr("Normalized scanlines"), "LineStringZM"),
-    ("CURB_POINTS", tr("Curb points"), "PointZ"),
-    ("ROAD_EDGES", tr("Road edges"), "LineStringZ"),
-    ("ROAD_SURFACE", tr("Road surface"), "PolygonZ"),
-    ("MARKINGS", tr("Markings"), "PolygonZ"),
-    ("MARKING_LINES", tr("Marking lines"), "LineStringZ"),
-    ("DRIVING_LINES", tr("Driving lines"), "LineStringZ"),
-    ("LANES", tr("Lanes"), "PolygonZ"),
-    ("CURVE_ELEMENTS", tr("Curve elements"), "None"),
-    ("PASSES", tr("Passes (the trajectory)"), "LineStringZ"),
-    ("ROADSIDE", tr("Roadside"), "LineStringZ"),
-    ("ROADSIDE_OBJECTS", tr("Poles, signs and trunks"), "PointZ"),
-    ("CROSS_SECTIONS", tr("Cross-sections"), "LineStringZ"),
-    ("SIGNALS", tr("Signals and poles"), "PointZ"),
-)}
+MAP_LAYERS = {name: MapLayer(help_texts()[name][0], getattr(features, name), geometry) for name, geometry in dict(
+    SCANLINES="LineStringZM", CURB_POINTS="PointZ", ROAD_EDGES="LineStringZ", ROAD_SURFACE="PolygonZ", MARKINGS="PolygonZ",
+    MARKING_LINES="LineStringZ", DRIVING_LINES="LineStringZ", LANES="PolygonZ", CURVE_ELEMENTS="None", PASSES="LineStringZ",
+    ROADSIDE="LineStringZ", ROADSIDE_OBJECTS="PointZ", CROSS_SECTIONS="LineStringZ", SIGNALS="PointZ").items()}

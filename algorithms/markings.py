@@ -37,9 +37,7 @@ class CorrectIntensity(Algorithm):
         call.text("REPORT", html_page("intensity_correction", report=report))
 
 
-IMAGE = "core.intensity.image:ImageSettings"
-
-IMAGE_SETTINGS = settings_of(IMAGE, "CELL_SIZE")
+IMAGE_SETTINGS = settings_of("core.intensity.image:ImageSettings", "CELL_SIZE")
 
 
 class IntensityImage(Algorithm):
@@ -156,7 +154,6 @@ LINE_SETTINGS = settings_of("core.markings.lines.fit:MarkingLineSettings", "COUN
 
 class FitMarkingLines(Algorithm):
     ID, TITLE, GROUP = "fitmarkinglines", "Fit marking lines", "Markings"
-    LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
     RETIRED = ("LINK_GAP", "LINK_BRIDGE", "MIN_PAINT")
 
     def declare(self):
@@ -167,7 +164,7 @@ class FitMarkingLines(Algorithm):
         self.add_input("cloud", "ROAD_POINTS", optional=True)
         self.add_settings(LINE_SETTINGS)
         self.add_map_sink("MARKING_LINES")
-        self.add_sink("NAMED_MARKINGS", fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False)
+        self.add_sink("NAMED_MARKINGS", fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False, look="MARKINGS")
 
     def work(self, call, progress):
         from ..core.markings.lines.fit import fit_marking_lines, named_by_lines
@@ -193,7 +190,6 @@ COLOUR_SETTINGS = settings_of("products.cloud.colours:ColourSettings", "AROUND*"
 
 class ColoursOfPaint(Algorithm):
     ID, TITLE, GROUP = "paintcolours", "Colours of paint", "Markings"
-    LOOKS = {"COLOURED_MARKINGS": "MARKINGS", "COLOURED_LINES": "MARKING_LINES"}
     NUMBERS = "WHITE YELLOW OPEN".split()
 
     def declare(self):
@@ -202,8 +198,8 @@ class ColoursOfPaint(Algorithm):
         self.add_input("clouds", "POINT_CLOUDS", optional=True)
         self.add_input("raster", "IMAGE", optional=True)
         self.add_settings(COLOUR_SETTINGS)
-        self.add_sink("COLOURED_MARKINGS", fields=[*MARKINGS, COLOUR], geometry="PolygonZ")
-        self.add_sink("COLOURED_LINES", fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True)
+        self.add_sink("COLOURED_MARKINGS", fields=[*MARKINGS, COLOUR], geometry="PolygonZ", look="MARKINGS")
+        self.add_sink("COLOURED_LINES", fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True, look="MARKING_LINES")
 
     def work(self, call, progress):
         from ..core.io.crs import check_same_crs

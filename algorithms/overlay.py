@@ -88,8 +88,6 @@ def _rough_points(call, image, crs):
     return replace(points, easting=easting, northing=northing, crs=crs)
 
 
-POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
-
 GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceSettings",
     "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*", EXTRAPOLATION=dict(choices=("automatic", "draw", "leave-out")),
     RESAMPLING=dict(choices=("bilinear", "nearest", "cubic")))
@@ -97,16 +95,15 @@ GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceS
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
-    LOOKS = {"OUTPUT": "ORTHOIMAGE"}
     NUMBERS = "POINTS RMSE LEFT_OUT_RMSE CHECK_POINTS CHECK_RMSE LARGEST OUTSIDE".split()
 
     def declare(self):
         self.add_input("raster", "IMAGE")
         self.add_input("layer", "GCPS", optional=True)
-        self.add_input("file", "GCP_FILE", optional=True, file_filter=POINTS_FILTER)
+        self.add_input("file", "GCP_FILE", optional=True, file_filter="Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)")
         self.add_input("crs", "CRS", optional=True)
         self.add_settings(GEOREFERENCE_SETTINGS)
-        self.add_output("raster", "OUTPUT")
+        self.add_output("raster", "OUTPUT", look="ORTHOIMAGE")
         self.add_sink("RESIDUALS", geometry="LineStringZ", optional=True, fields=RESIDUALS)
         self.add_report()
 

@@ -43,13 +43,12 @@ BOUNDARY_SETTINGS = settings_of("core.road.scanlines.detect:ScanlineBoundarySett
 
 class BoundariesFromScanlines(Algorithm):
     ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
-    LOOKS = {"CORNERS": "CURB_POINTS"}
 
     def declare(self):
         self.add_map_layer("SCANLINES")
         self.add_trajectory()
         self.add_settings(BOUNDARY_SETTINGS)
-        self.add_sink("CORNERS", fields=CURB_POINTS, geometry="PointZ", optional=True)
+        self.add_sink("CORNERS", fields=CURB_POINTS, geometry="PointZ", optional=True, look="CURB_POINTS")
         self.add_sink("BOUNDARIES", fields=ROAD_EDGES, geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):

@@ -7,8 +7,6 @@ from .survey_files import trajectory_features
 from .survey_input import SURVEY_SETTINGS, imported_trajectory
 from .texts import tr
 
-TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
-
 
 class ImportTrajectory(Algorithm):
     ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
@@ -20,7 +18,7 @@ class ImportTrajectory(Algorithm):
         self.add_input("crs", "INPUT_CRS", optional=True)
         self.add_input("crs", "TARGET_CRS", optional=True)
         self.add_input("clouds", "POINT_CLOUDS", optional=True)
-        self.add_settings(TIME_SETTING)
+        self.add_settings(SURVEY_SETTINGS, only=("TIME",))
         self.add_sink("OUTPUT", fields=TRAJECTORY, geometry="PointZ")
 
     def work(self, call, progress):
@@ -39,17 +37,14 @@ class ImportTrajectory(Algorithm):
         return {"ROWS": len(trajectory)}
 
 
-SCANNER_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "SCANNER_FIELD")
-
-
 class EstimateTrajectory(Algorithm):
     ID, TITLE, GROUP = "estimatetrajectory", "Estimate trajectory", "Survey"
     NUMBERS = "ROWS LENGTH SCANNERS SIGMA SIGMA_Z".split()
 
     def declare(self):
-        self.add_point_clouds()
-        self.add_crs()
-        self.add_settings(SCANNER_SETTING)
+        self.add_input("clouds", "POINT_CLOUDS")
+        self.add_input("crs", "CRS", optional=True, advanced=True)
+        self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD",))
         self.add_sink("TRAJECTORY", fields=ESTIMATED_TRAJECTORY, geometry="PointZ")
         self.add_report()
 

@@ -18,9 +18,6 @@ READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJE
 EXECUTION_SETTINGS = settings_of("core.execution.choice:ExecutionSettings", "WORKERS* SCHEDULER* INSECURE*")
 
 
-WITHOUT_TRAJECTORY = tr("Left out, it is estimated from the points (see Estimate trajectory).")
-
-
 def estimated_trajectory(call, progress):
     """The EstimatedTrajectory of POINT_CLOUDS where TRAJECTORY was left out, None where it was given; says so in the log."""
     if call.given("TRAJECTORY"):
@@ -198,10 +195,6 @@ def imported_trajectory(call, progress):
 # The layer CORRECTIONS as an input: points, lines or a table, of whatever program.
 
 NEEDED = ("action", "target")
-
-
-def add_corrections(algorithm):
-    algorithm.add_input("layer", "CORRECTIONS", optional=True, advanced=True)
 
 
 def corrections_of(call):

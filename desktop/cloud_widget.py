@@ -13,7 +13,7 @@ from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QMenu, QToo
 
 from ..algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files
 from ..core.common.errors import RoadExtractionError
-from ..processing_provider.parameters import CLOUD_FILTER
+from ..processing_provider.algorithm import CLOUD_FILTER
 from ..processing_provider.texts import tr
 from .dialog_wrapper import DialogWrapper
 from .widgets import LAST_INPUT, column, wrapped
@@ -71,10 +71,10 @@ class PointCloudsWidget(QWidget):
         self.menu.clear()
         self.menu.addAction(tr("Add files…"), self.choose_files)
         self.menu.addAction(tr("Add a folder…"), self.choose_folder)
-        layers = project_clouds()
+        layers = [layer for layer in QgsProject.instance().mapLayers().values() if layer.type() == Qgis.LayerType.PointCloud]
         if layers:
             self.menu.addSection(tr("Point clouds of the project"))
-            for name, source in layers:
+            for name, source in sorted((layer.name(), layer.source()) for layer in layers):
                 self.menu.addAction(name, lambda source=source: self.add([source]))
 
     def choose_files(self) -> None:
@@ -128,12 +128,6 @@ def dropped_clouds(mime) -> list[str]:
     else:
         paths = [url.toLocalFile() for url in mime.urls() if url.isLocalFile()]
     return [path for path in paths if path and (Path(path).is_dir() or path.lower().endswith((*SUFFIXES, VIRTUAL)))]
-
-
-def project_clouds() -> list[tuple[str, str]]:
-    """(name, file) of the point cloud layers of the project, by name."""
-    layers = QgsProject.instance().mapLayers().values()
-    return sorted((layer.name(), layer.source()) for layer in layers if layer.type() == Qgis.LayerType.PointCloud)
 
 
 def described(given: list[str]) -> str:

@@ -1,25 +1,26 @@
 """The Lanewright menu and its button in the plugin toolbar: what a user reaches without opening the toolbox."""
 
-from pathlib import Path
+from __future__ import annotations
 
-from qgis.core import QgsApplication, QgsProcessingModelAlgorithm, QgsProject
-from qgis.PyQt.QtCore import QObject, QUrl
+from pathlib import Path
+from typing import Any
+
+from qgis.core import Qgis, QgsApplication, QgsMapLayer, QgsProcessingModelAlgorithm, QgsProcessingUtils, QgsProject
+from qgis.PyQt.QtCore import QObject, Qt, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
-from qgis.PyQt.QtWidgets import QMenu
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QMenu, QTableWidget, QTableWidgetItem, QTabWidget, QWidget
 
 from ..algorithms.destinations import destination_path
+from ..algorithms.export import DRAWN
 from ..core.pipeline.kept_run import WINDOW
 from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
-from ..processing_provider.results.road_maps import clouds_of, road_maps
-from ..processing_provider.results.runs import last_report, last_run
+from ..processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
+from ..processing_provider.results.runs import last_report, last_run, run_table, run_tables
 from ..processing_provider.texts import tr
 from .background import SampleRun
-from .layout.shown import sheet_values
 from .manual import ManualWindow
-from .runs_window import RunsWindow
-from .widgets import all_is_there, say
+from .widgets import all_is_there, column, say
 
-PROVIDER = "lanewright"
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
 
@@ -89,7 +90,7 @@ class Menu(QObject):
         """A sub-menu that opens the models of the plugin in QGIS's model designer, each as a copy to be changed and saved."""
         menu = QMenu(tr("Open a model in the designer"), self.iface.mainWindow())
         menu.setIcon(QgsApplication.getThemeIcon("/processingModel.svg"))
-        provider = QgsApplication.processingRegistry().providerById(PROVIDER)
+        provider = QgsApplication.processingRegistry().providerById("lanewright")
         for algorithm in provider.algorithms() if provider else ():
             if isinstance(algorithm, QgsProcessingModelAlgorithm):
                 menu.addAction(algorithm.displayName(), lambda checked=False, name=algorithm.id(): self.open_model(name))
@@ -257,3 +258,76 @@ class Menu(QObject):
         maps = self._road_maps()
         if maps:
             self.open_algorithm("lanewright:printsheets", sheet_values(maps[0], maps, QgsProject.instance()))
+
+
+# What of a project belongs on the sheets of a road map: its layers that are switched on, and the image below them with its credit.
+
+def shown_layers(road_map: RoadMap, project: QgsProject, hidden: bool = False) -> list[QgsMapLayer]:
+    """Layers of a road map, and others in its group, that have a place on the map, from above; those that are switched off only with `hidden`."""
+    inside = {node.layerId() for node in road_map.group.findLayers()} if road_map.group is not None else set()
+    inside |= {layer.id() for layer in road_map.layers}
+    return [node.layer() for node in project.layerTreeRoot().findLayers()
+            if node.layerId() in inside and node.layer() and node.layer().isSpatial() and (hidden or node.itemVisibilityChecked())]
+
+
+def layers_below(project: QgsProject, maps: list[RoadMap]) -> list[QgsMapLayer]:
+    """Images and web maps of a project that are no part of a road map, from above."""
+    inside = {layer.id() for road_map in maps for layer in shown_layers(road_map, project, hidden=True)}
+    nodes = project.layerTreeRoot().findLayers()
+    return [node.layer() for node in nodes if node.layer() and node.layer().id() not in inside and node.layer().isSpatial()
+            and node.layer().type() != Qgis.LayerType.Vector]
+
+
+def credit_of(layer: QgsMapLayer) -> str:
+    """Whose data a layer shows, by its metadata or by its server; "" where neither says so."""
+    return ", ".join(layer.metadata().rights()) or layer.serverProperties().attribution()
+
+
+def sheet_values(road_map: RoadMap, maps: list[RoadMap], project: QgsProject) -> dict[str, Any]:
+    """{parameter: value} of Sheets along the road for a road map: what is switched on (all where nothing is), over the image that is seen."""
+    shown = shown_layers(road_map, project) or list(road_map.layers)
+    values: dict[str, Any] = {output: layer.id() if layer in shown else None for output, layer in zip(road_map.outputs, road_map.layers)}
+    visible = project.layerTreeRoot().checkedLayers()
+    below = next((layer for layer in layers_below(project, maps) if layer in visible), None)
+    return {**{name: values.get(name) for name in DRAWN}, "TITLE": road_map.title,
+            **({} if below is None else {"BELOW": below.id(), "CREDIT": credit_of(below)})}
+
+
+# A window of QGIS with the runs since it was started: one table for each algorithm.
+
+SIZE = (1000, 420)  # px
+
+
+class RunsWindow(QDialog):
+    """The window; a click on a column's head sorts by it."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent, windowTitle=tr("Table of the runs"))
+        self.tabs = QTabWidget()
+        for title, head, rows in run_tables():
+            self.tabs.addTab(_table(head, rows), title)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.addButton(tr("Open in the browser"), QDialogButtonBox.ButtonRole.ActionRole).clicked.connect(lambda checked=False: _in_browser())
+        buttons.rejected.connect(self.reject)
+        column(self, self.tabs, buttons)
+        self.resize(*SIZE)
+
+
+def _table(head, rows):
+    table = QTableWidget(len(rows), len(head))
+    table.setHorizontalHeaderLabels(head)
+    table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+    for row, values in enumerate(rows):
+        for number, value in enumerate(values):
+            item = QTableWidgetItem()
+            item.setData(Qt.ItemDataRole.DisplayRole, value)  # numbers stay numbers, by which they are sorted
+            table.setItem(row, number, item)
+    table.setSortingEnabled(True)
+    table.resizeColumnsToContents()
+    return table
+
+
+def _in_browser():
+    path = QgsProcessingUtils.generateTempFilename("runs.html")
+    Path(path).write_text(run_table(), encoding="utf-8")
+    QDesktopServices.openUrl(QUrl.fromLocalFile(path))

@@ -6,33 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from weakref import WeakKeyDictionary
 
-from qgis.core import (
-    Qgis,
-    QgsApplication,
-    QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsMapLayer,
-    QgsProject,
-    QgsRectangle,
-    QgsSettings,
-)
+from qgis.core import Qgis, QgsApplication, QgsCoordinateReferenceSystem, QgsMapLayer, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas, QgsMapTool, QgsMessageViewer
 from qgis.PyQt import sip
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QDialog,
-    QDialogButtonBox,
-    QFileDialog,
-    QHBoxLayout,
-    QLabel,
-    QLayout,
-    QPushButton,
-    QVBoxLayout,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QLayout, QPushButton, QVBoxLayout, QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
+from ..processing_provider.results.layer_tree import brought_to
 from ..processing_provider.texts import tr
 
 LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPath"  # QGIS's own settings
@@ -41,6 +21,8 @@ LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPa
 def button(text: str, what: Callable[[], object] | None = None, tip: str = "") -> QPushButton:
     """A button that calls a function without arguments."""
     push_button = QPushButton(text, toolTip=tip)
+    if len(text) == 1:   # an arrow
+        push_button.setFixedWidth(34)
     if what is not None:
         push_button.clicked.connect(lambda checked=False: what())
     return push_button
@@ -100,14 +82,6 @@ def folder_for_results(parent: QWidget) -> str:
     if folder:
         settings.setValue(LAST_OUTPUT, folder)
     return folder
-
-
-def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:
-    """An extent in another CRS; an empty one where it has no place there."""
-    try:
-        return QgsCoordinateTransform(source, target, QgsProject.instance()).transformBoundingBox(extent)
-    except QgsCsException:
-        return QgsRectangle()
 
 
 def show_extent(canvas: QgsMapCanvas, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> None:

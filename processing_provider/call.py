@@ -1,13 +1,17 @@
 """One run of an algorithm in QGIS: its parameters, layers, destinations and progress."""
 
+import os
 from pathlib import Path
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsDataSourceUri,
     QgsExpression,
+    QgsMapLayer,
     QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingOutputLayerDefinition,
+    QgsProcessingUtils,
     QgsProperty,
     QgsProviderRegistry,
     QgsRasterLayer,
@@ -20,7 +24,8 @@ from ..algorithms.destinations import at_path, destination_path
 from ..algorithms.vector_source import crs_to_write
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress, RemainingTime
-from .input_files import add_tables, close_database, input_files, layer_file, written_over
+from ..core.io.local_files import check_local, gdal_exceptions
+from ..core.lazy import gdal
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .results.layer_tree import NAMES_ONLY
 from .results.runs import run_of
@@ -38,7 +43,9 @@ class QgisCall(Call):
     def __init__(self, processing, parameters, context, feedback):
         super().__init__(processing.declaration, parameters)
         self.processing, self.context, self.feedback = processing, context, feedback
-        self._inputs = input_files(processing, parameters, context)
+        # (path, table or "", label) of every file that the inputs name and that is there
+        self._inputs = [(path, table, definition.description()) for definition in _inputs(processing, READ)
+                        for path, table in map(_file_of, _sources(parameters.get(definition.name()), context)) if path is not None]
 
     @property
     def names_only(self):
@@ -50,7 +57,8 @@ class QgisCall(Call):
         names = self.parameters.get(name)
         if not isinstance(names, (list, tuple)) and not hasattr(names, "source"):
             names = self.processing.parameterAsFileList(self.parameters, name, self.context)
-        return [layer_file(source, self.context) for source in (names if isinstance(names, (list, tuple)) else [names])]
+        # each a path, or a layer, its name or its id in the project
+        return [next(iter(_sources(name, self.context)), str(name)) for name in (names if isinstance(names, (list, tuple)) else [names])]
 
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)
@@ -129,7 +137,7 @@ class QgisCall(Call):
     # -- out --------------------------------------------------------------------------------
 
     def print_sheets(self, settings, progress):
-        from ..desktop.layout.print_sheets import print_sheets
+        from ..desktop.layout.sheets import print_sheets
 
         return print_sheets(self, settings, progress)
 
@@ -147,7 +155,9 @@ class QgisCall(Call):
         return self.processing.parameterAsFileOutput(self.parameters, name, self.context)
 
     def read_as(self, value, path):
-        return written_over(value, path, self._inputs)
+        table = QgsDataSourceUri(value.removeprefix("ogr:")).table() if value.startswith("ogr:") else ""
+        return next((label for source, read, label in self._inputs if path.exists() and os.path.samefile(path, source)
+                     and (not table or table == (read or _first_table(source)))), "")
 
     def finish(self, numbers):
         """Write the layers, name the files, and return the dictionary QGIS wants."""
@@ -162,7 +172,7 @@ class QgisCall(Call):
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(provenance, self.surveyed(), self.algorithm.WHOLE_MAP, self.context, self.processing.group_of_inputs)
         for name, dest in self._results.items():
-            look = self.algorithm.LOOKS.get(name, name)
+            look = self.algorithm.parameter(name).look or name
             embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
             style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
@@ -230,3 +240,98 @@ class FeedbackProgress(Progress):
 
     def warn(self, text):
         self.feedback.pushWarning(told(text))
+
+
+# Which files a run reads, so that none of them is written over; and tables put into a database that programs have open.
+
+OPENED_BY_QGIS = ("source", "vector", "raster", "layer")
+READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
+
+
+def _inputs(algorithm, kinds):
+    return [definition for definition in algorithm.parameterDefinitions() if definition.type() in kinds and not definition.isDestination()]
+
+
+def check_files(algorithm, parameters, context):
+    """Raise RoadExtractionError where an input names a file that describes data elsewhere, which QGIS would fetch."""
+    for definition in _inputs(algorithm, OPENED_BY_QGIS):
+        value = _static(parameters.get(definition.name()), context)
+        file = value.partition("|")[0] if isinstance(value, str) else ""
+        if file and os.path.isfile(file):
+            check_local(file)
+
+
+def _static(value, context):
+    """A value without what QGIS may put about it: whether the selected features alone are meant, for example."""
+    return value.source.valueAsString(context.expressionContext())[0] if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
+
+
+def asks_servers(algorithm, parameters, context):
+    """Whether an input is a layer that the user has from a server, which is then asked; for files, nothing is fetched."""
+    sources = [source for definition in _inputs(algorithm, READ) for source in _sources(parameters.get(definition.name()), context)]
+    return any("://" in source or "/vsi" in source.lower() for source in sources if not os.path.exists(source))
+
+
+def close_database(destination, context):
+    """Let go of the layers that were read, for this run alone, from the database that a table is about to be added to.
+
+    QGIS would look for the new table in the connection it has open, and not find it there.
+    """
+    path = destination_path(destination)
+    if path is None or not destination.startswith("ogr:") or not path.exists():
+        return
+    store = context.temporaryLayerStore()
+    for layer in list(store.mapLayers().values()):
+        read, _ = _file_of(layer.source())
+        if read is not None and os.path.samefile(read, path):
+            store.removeMapLayer(layer.id())
+
+
+def _sources(value, context):
+    """The sources of the layers and files that a parameter's value names."""
+    if isinstance(value, (list, tuple)):
+        return [source for item in value for source in _sources(item, context)]
+    value = _static(value, context)
+    if isinstance(value, QgsMapLayer):
+        return [value.source()]
+    if not isinstance(value, str) or not value:
+        return []
+    layer = None if os.path.exists(value) else QgsProcessingUtils.mapLayerFromString(value, context, False)
+    return [value if layer is None else layer.source()]
+
+
+def _file_of(source):
+    """(Path, table) of a source that is a file, or (None, "")."""
+    parts = QgsProviderRegistry.instance().decodeUri("ogr", source)
+    path = Path(parts.get("path") or source)
+    try:
+        return (path, parts.get("layerName") or "") if path.is_file() else (None, "")
+    except OSError:  # a name too long to be one
+        return None, ""
+
+
+def _first_table(path):
+    """The table that is read where a database is named alone."""
+    tables = QgsProviderRegistry.instance().querySublayers(str(path))
+    return tables[0].name() if tables else ""
+
+
+# Tables of one GeoPackage put into another that stays where it is, since programs have it open.
+
+def add_tables(written, path):
+    """Put all tables of a database into another, in one transaction: whatever ends the program leaves those of before or these.
+
+    Tables of the same names are replaced. Programs that have the database open, this QGIS too, read the new tables from then on.
+
+    written, path : Path
+    Raises RoadExtractionError if another program keeps the database locked, or there is no room; then the tables of before stand.
+    """
+    try:
+        with gdal_exceptions():
+            target = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
+            # one transaction from the first table to the last, and none in between
+            gdal.VectorTranslate(target, str(written), accessMode="overwrite", options=["-preserve_fid", "-gt", "unlimited"])
+            target = None
+    except RuntimeError as problem:
+        raise RoadExtractionError(
+            tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(reason=problem)) from problem

@@ -42,8 +42,6 @@ class LanewrightProvider(QgsProcessingProvider):
 
 # The models that come along, as the toolbox lists them: their inputs and results explained in the words of their stages.
 
-MANUAL_PAGE = "lanewright:models"
-
 
 class LanewrightModel(QgsProcessingModelAlgorithm):
     """A model of the plugin: its id has no spaces, its title is in the user's language."""
@@ -87,7 +85,7 @@ def explain(model):
     """
     texts = model.helpContent()
     texts["ALG_DESC"] = tr(texts.get("ALG_DESC", ""))
-    texts["HELP_URL"] = MANUAL_PAGE
+    texts["HELP_URL"] = "lanewright:models"   # the page of the manual
     for name, parameter in asked_for(model).items():
         texts[name] = parameter.help()
         definition = model.parameterDefinition(name).clone()

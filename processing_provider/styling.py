@@ -35,13 +35,11 @@ from qgis.PyQt.QtXml import QDomDocument
 
 from ..algorithms.destinations import destination_path
 from ..core.common.features import COLOUR
-from .results.attributes import WORDS, explain_attributes
+from .results.attributes import STYLES, WORDS, explain_attributes
 from .results.layer_tree import place_layer
 from .results.road_maps import describe_origin
 from .results.runs import GROUP
 from .texts import tr
-
-STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 
 # Output name -> (style, place in the group: small is drawn below)
 LOOKS = json.loads((STYLES / "looks.json").read_text(encoding="utf-8"))

@@ -16,7 +16,7 @@ STEP_X, STEP_Y = 300, 130
 def definitions():
     """Every input a model may have, by name; its help is that of the stage it goes to."""
     from lanewright.algorithms.road import DetectBoundaries
-    from lanewright.processing_provider.parameters import qgis_parameter
+    from lanewright.processing_provider.algorithm import qgis_parameter
     from qgis.core import (
         QgsProcessing,
         QgsProcessingParameterCrs,

@@ -83,10 +83,11 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: Road
 
     That is the mouth of a junction. On the way a lane that was driven goes on as most of its borders and the drive do, another one keeps its share
     of the room between the nearest borders that go on. Either may change by the double of SAME_LANE: half of that is what its middle is off by
-    then. Where anything begins on the lane, or between the borders of one that nobody drove, such as an island, it ends.
+    then. Where anything begins on the lane, or between the borders of one that nobody drove, such as an island, it ends. A few metres are worth it
+    only where the road ends with them.
     """
     spans, result = spans_of(tracks), list(tracks)
-    reach = int(ROADS.shortest_bare / STATION_STEP)
+    least, reach = (int(length / STATION_STEP) for length in (ALIGNMENT.min_status_length, ROADS.shortest_bare))
     for number in range(len(tracks)):
         for head in (True, False):
             track = result[number]
@@ -94,12 +95,12 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: Road
             ahead = np.arange(end, end + step * (reach + 1), step)
             ahead = ahead[(ahead >= 0) & (ahead < len(boundaries.s))]
             d, width = track.at(end)
-            course = _beside_borders(boundaries, ahead, d, width, _driven_on(estimate, boundaries.s, ahead, d, width, track.direction))
+            course = _beside_borders(boundaries, ahead, d, width, _driven_on(estimate, boundaries.s, ahead, d, width, track.direction), least)
             near = [result[k] for k in spans.near(end - 2 * reach, end + 2 * reach).tolist() if k != number]
             taken = [any(abs(other.at(k)[0] - place) < (other.at(k)[1] + width) / 2 - SAME_LANE for other in near)
                      for k, place in zip(ahead.tolist(), course.tolist())]
             count = taken.index(True) if True in taken else len(taken)
-            if count > 1:
+            if count > (1 if ahead[count - 1] in (0, len(boundaries.s) - 1) else least):   # the road ends there
                 ahead, course = (values[1:count][::step] for values in (ahead, course))
                 unknown = np.full(len(course), -1)
                 more = track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1)
@@ -121,12 +122,12 @@ def _driven_on(estimate, s, ahead, d, width, direction):
     return (drives - drives[:, :1]).mean(axis=0) if len(drives) else None
 
 
-def _beside_borders(boundaries, ahead, d, width, driven):
+def _beside_borders(boundaries, ahead, d, width, driven, least):
     """(N,) m, offsets of a lane at `d` at the stations `ahead`, from the first of them on, as far as what bounds it goes on alike."""
     rows = boundaries.d.spans.near(*sorted((int(ahead[0]), int(ahead[-1]))))
     rows = rows[~SURFACE_END[boundaries.patterns[rows, ahead[0]]]]
     offset = boundaries.d[rows[:, None], ahead]
-    beside, least = offset[:, 0] - d, int(ALIGNMENT.min_status_length / STATION_STEP)
+    beside = offset[:, 0] - d
     goes_on = np.isfinite(offset[:, :least + 1]).all(axis=1)
     sides = [np.flatnonzero((side * beside > width / 2 - SAME_LANE) & goes_on) for side in (1, -1)]
     nearest = np.array([side[np.abs(beside[side]).argmin()] for side in sides if len(side)], int)
@@ -147,8 +148,7 @@ def _beside_borders(boundaries, ahead, d, width, driven):
             moved = np.maximum(aside.max(axis=0), np.abs(aside).min(axis=0))
             within = np.abs(begins - course) < width / 2
         alike = (moved < 2 * SAME_LANE) & ~within.any(axis=0)
-    count = len(alike) if alike.all() else int(np.argmin(alike))
-    return course[:1 if driven is None and count <= least else count]
+    return course[:len(alike) if alike.all() else int(np.argmin(alike))]
 
 
 def _without_steps(parts):

@@ -3,21 +3,35 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 
+from processing.core.ProcessingResults import resultsList
+from processing.gui import BatchAlgorithmDialog as qgis_batch
+from processing.gui import BatchPanel as qgis_batch_panel
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis import utils
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsProject, QgsSettings
-from qgis.PyQt.QtWidgets import QDialogButtonBox, QInputDialog, QMenu, QTextBrowser, QWidget
+from qgis.core import (
+    Qgis,
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputHtml,
+    QgsProcessingUtils,
+    QgsProject,
+    QgsSettings,
+)
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QTextBrowser, QWidget
 
 from ...algorithms.destinations import package_and_table
-from ...algorithms.survey_files import cloud_files, survey_name
+from ...algorithms.survey_files import SUFFIXES, VIRTUAL, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.runs import last_run
 from ...processing_provider.texts import tr
 from ..review.corrections_layer import SURVEY, corrections_layers
-from ..widgets import button, folder_for_results, tell_result
-from .batch_dialog import BatchAlgorithmDialog
+from ..trajectory_widget import trajectory_beside
+from ..widgets import LAST_INPUT, button, folder_for_results, tell_result
 from .database_dialog import DatabaseDialog, database_destinations, destinations, outputs_by_default
 from .stage_inputs import name_by_survey, presets
 
@@ -26,7 +40,25 @@ SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distanc
 FEWEST_OUTPUTS = 3  # that are worth one place for all
 
 
-class LanewrightDialog(AlgorithmDialog):
+class _OnePlaceForAll:
+    """What the dialog of a run and that of a batch have in common."""
+
+    def choose_folder(self) -> None:
+        folder = folder_for_results(self)
+        if folder:
+            self.save_everything_to(folder)
+
+    def _button(self, text, tip, what=None):
+        push_button = button(text, what, tip)
+        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
+        return push_button
+
+    def _say(self, text):
+        self.messageBar().clearWidgets()
+        self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
+
+
+class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
@@ -80,17 +112,7 @@ class LanewrightDialog(AlgorithmDialog):
         if survey in layer_by_survey or chosen in layer_by_survey.values():
             self.setParameters({"CORRECTIONS": layer_by_survey.get(survey)})
 
-    def _button(self, text, tip):
-        push_button = button(text, tip=tip)
-        self.buttonBox().addButton(push_button, QDialogButtonBox.ButtonRole.ResetRole)
-        return push_button
-
     # -- everything to one place ----------------------------------------------------------------
-
-    def choose_folder(self) -> None:
-        folder = folder_for_results(self)
-        if folder:
-            self.save_everything_to(folder)
 
     def save_everything_to(self, folder: str) -> None:
         """Set the destinations of all results that are made by default."""
@@ -114,10 +136,6 @@ class LanewrightDialog(AlgorithmDialog):
         places = database_destinations(self.algorithm(), connection, schema, prefix)
         self.setParameters(places)
         self._say(tr("{count} layers go to the schema {schema} of {connection}.").format(count=len(places), schema=schema, connection=connection))
-
-    def _say(self, text):
-        self.messageBar().clearWidgets()
-        self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
 
     # -- presets ----------------------------------------------------------------------------------
 
@@ -177,3 +195,123 @@ def presets_of(algorithm: str) -> dict[str, dict]:
 
 def _keep(algorithm, presets):
     QgsSettings().setValue(f"{PRESETS}/{algorithm}", json.dumps(presets))
+
+
+# The batch of our algorithms: QGIS's own, with one folder for the results of all surveys; rows that name no place make temporary layers.
+
+CLOUDS = "POINT_CLOUDS"
+PATH_WIDTH = 330  # px
+
+
+def surveys_in(folder: str) -> list[str]:
+    """Folders with point clouds, the given one and those below it, and virtual point clouds of other folders: each a survey, by name."""
+    paths = [path for path in Path(folder).rglob("*") if path.is_file()]
+    folders = {str(path.parent) for path in paths if path.suffix.lower() in SUFFIXES}
+    virtual = [str(path) for path in paths if path.suffix.lower() == VIRTUAL]
+    return sorted({*folders, *(path for path in virtual if folders.isdisjoint(_folders_of(path)))})
+
+
+def _folders_of(cloud):
+    """The folders of the files of a virtual point cloud; none of one that cannot be used, of which the run says why."""
+    try:
+        return {str(Path(path).parent) for path in cloud_files([cloud], tr("Point clouds"))}
+    except RoadExtractionError:
+        return set()
+
+
+class BatchAlgorithmDialog(_OnePlaceForAll, qgis_batch.BatchAlgorithmDialog):
+    """QGIS's batch of an algorithm; `title` stands in its frame.
+
+    It has the name of QGIS's own, by which widgets know that they stand in the table of a batch.
+    """
+
+    def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
+        super().__init__(algorithm, parent)
+        self.setWindowTitle(tr("Batch: {title}").format(title=title))
+        self.mainWidget().checkLoadLayersOnCompletion.setChecked(True)
+        for name in (CLOUDS, "TRAJECTORY"):  # QGIS shows the last ten letters of a path
+            if name in self.mainWidget().parameter_to_column:
+                self.mainWidget().tblParameters.setColumnWidth(self.mainWidget().parameter_to_column[name], PATH_WIDTH)
+        if {CLOUDS, "TRAJECTORY"} <= set(self.mainWidget().parameter_to_column):
+            self._button(tr("Add the surveys of a folder…"), tr(
+                "One row for each folder with point clouds, and the trajectory that lies beside them"), self.choose_surveys)
+        for fill in self.findChildren(qgis_batch_panel.BatchPanelFillWidget):
+            if fill.parameterDefinition.name() == CLOUDS:  # QGIS would make a row of every file of whatever kind
+                fill.showDirectorySelectionDialog = self.choose_surveys
+        self._button(tr("Save everything to…"), tr(
+            "One folder for all surveys: of each the layers in one GeoPackage called like the survey, images and reports beside it"),
+            self.choose_folder)
+        self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+
+    def choose_surveys(self) -> None:
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder of the surveys"), QgsSettings().value(LAST_INPUT, ""))
+        if folder:
+            QgsSettings().setValue(LAST_INPUT, folder)
+            self.add_surveys(folder)
+
+    def add_surveys(self, folder: str) -> None:
+        """A row for each survey in a folder and below, with its trajectory where one lies beside it."""
+        surveys, panel = surveys_in(folder), self.mainWidget()
+        row = panel.batchRowCount()
+        while row > 0 and not panel.wrappers[row - 1][panel.parameter_to_column[CLOUDS]].parameterValue():
+            row -= 1  # rows that are empty are filled first
+        for clouds in surveys:
+            if row >= panel.batchRowCount():
+                panel.addRow(1)
+            panel.wrappers[row][panel.parameter_to_column[CLOUDS]].setParameterValue(clouds, self.processingContext())
+            drive = trajectory_beside([clouds])
+            if drive:
+                panel.wrappers[row][panel.parameter_to_column["TRAJECTORY"]].setParameterValue(drive, self.processingContext())
+            row += 1
+        self._say(tr("{count} surveys in {folder}.").format(count=len(surveys), folder=folder))
+
+    def save_everything_to(self, folder: str) -> None:
+        """Set the destinations of the rows that have an input."""
+        names = self.surveys()
+        for row, name in enumerate(names):
+            for output, path in destinations(self.algorithm(), folder, name).items():
+                self._place(row, output).setValue(path)
+        self._say(tr("The results of {count} rows go to {folder}: {names}.").format(count=len(names), folder=folder, names=", ".join(names)))
+
+    def surveys(self) -> list[str]:
+        """What the survey of each row is called, as a name of files, no two alike."""
+        panel, names = self.mainWidget(), []
+        for row in range(panel.batchRowCount()):
+            name = self._survey(row).replace("/", "_") or f"{self.algorithm().name()}_{row + 1}"
+            alike = sum(earlier == name or earlier.rsplit("_", 1)[0] == name and earlier.rsplit("_", 1)[1].isdigit() for earlier in names)
+            names.append(f"{name}_{alike + 1}" if alike else name)
+        return names
+
+    def _survey(self, row):
+        column = self.mainWidget().parameter_to_column.get(CLOUDS)
+        if column is None:
+            return ""
+        clouds = self.mainWidget().wrappers[row][column].parameterValue() or []
+        try:
+            return survey_name(cloud_files([clouds] if isinstance(clouds, str) else list(clouds), tr("Point clouds")))
+        except RoadExtractionError:
+            return ""
+
+    def _place(self, row, output):
+        """The cell where a result of a row is named."""
+        panel = self.mainWidget()
+        return panel.tblParameters.cellWidget(row + 1, panel.parameter_to_column[output])
+
+    def loadHtmlResults(self, results: dict, num: int) -> None:
+        """The report of a run into the Results Viewer, by its file. That of QGIS 3.40 forgets the time, and the batch would end with an error."""
+        for output in self.algorithm().outputDefinitions():
+            if isinstance(output, QgsProcessingOutputHtml) and results.get(output.name()):
+                file = Path(results[output.name()])
+                temporary = file.is_relative_to(QgsProcessingUtils.tempFolder())
+                title = num + 1 if temporary else f"{file.parent.name}/{file.stem}"
+                resultsList.addResult(self.algorithm().icon(), f"{output.description()} [{title}]", time.localtime(), str(file))
+
+    def runAlgorithm(self) -> None:
+        """Run all rows; one that names no destination makes temporary layers, as in the dialog of a single run."""
+        outputs = [definition.name() for definition in self.algorithm().destinationParameterDefinitions()]
+        names = [definition.name() for definition in outputs_by_default(self.algorithm())]
+        for row in range(self.mainWidget().batchRowCount()):
+            if not any(self._place(row, output).getValue() for output in outputs):
+                for output in names:
+                    self._place(row, output).setValue(QgsProcessing.TEMPORARY_OUTPUT)
+        super().runAlgorithm()

@@ -1,13 +1,19 @@
-"""The axes of the roads of a map, from its lines alone: smooth, with stations and heights of the ground, whatever way the vehicle took."""
+"""From the lines of a road map to sheets: the axes of its roads, with stations and heights of the ground, whatever way the vehicle took."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+import shapely
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsMapLayer, QgsProject, QgsVectorLayer
 from scipy.ndimage import median_filter
+from shapely.geometry import LineString, Polygon
+
+from ...processing_provider.texts import tr
 
 STEP = 1.0             # m of station between places of an axis
 SMOOTHED = 3.0         # m, sigma of the smoothing along the axis, which moves it by SMOOTHED² / 2 radius
@@ -174,3 +180,229 @@ def _across(rows, places, course):
         first, last = np.flatnonzero(known)[[0, -1]]
         heights[first:last + 1] = _smooth(np.interp(np.arange(first, last + 1), np.flatnonzero(known), heights[known]), SMOOTHED)
     return heights, float(np.percentile(sides, USUAL))
+
+
+# The lines of a road map's layers as numbers: places in metres, heights, stations; and how well they are known.
+
+LEADING = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")   # lines that lead an axis, best first
+
+
+@dataclass(frozen=True)
+class MapLine:
+    """output : the result that it is of, such as ROAD_EDGES; places : (N, 3) metres, z may be NaN; row : its fields by name."""
+
+    output: str
+    places: np.ndarray
+    row: dict[str, Any]
+
+    def number(self, name: str) -> float:
+        """A field in metres, of a layer in feet too; NaN where it has none."""
+        for column, unit in ((f"{name}_m", 1.0), (f"{name}_ft", 0.3048)):
+            value = self.row.get(column)
+            if isinstance(value, (int, float)):
+                return value * unit
+        return math.nan
+
+
+def lines_of(layers: dict[str, QgsMapLayer], crs: QgsCoordinateReferenceSystem, project: QgsProject, unit: float) -> list[MapLine]:
+    """The lines of the layers of lines, in a CRS whose unit is so many metres; what cannot be transformed is left out."""
+    lines = []
+    for output, layer in layers.items():
+        if not isinstance(layer, QgsVectorLayer) or layer.geometryType() != Qgis.GeometryType.Line:
+            continue
+        transform = QgsCoordinateTransform(layer.crs(), crs, project) if layer.crs().isValid() and layer.crs() != crs else None
+        names = [field.name() for field in layer.fields()]
+        for feature in layer.getFeatures():
+            geometry = feature.geometry()
+            try:
+                if geometry.isEmpty() or (transform is not None and geometry.transform(transform) != Qgis.GeometryOperationResult.Success):
+                    continue
+            except QgsCsException:
+                continue
+            row = dict(zip(names, feature.attributes()))
+            for part in shapely.get_parts(shapely.from_wkb(bytes(geometry.asWkb()))):
+                places = shapely.get_coordinates(part, include_z=True) * unit
+                if len(places) > 1:
+                    lines.append(MapLine(output, places, row))
+    return lines
+
+
+def road_lines(lines: list[MapLine]) -> list[RoadLine]:
+    """Those that run along a road, by the stations in their fields; where none is, the longest line alone, pieces of one line joined."""
+    result = []
+    for line in lines:
+        first, last = line.number("station"), line.number("end")
+        if line.output not in LEADING or not (math.isfinite(first) and math.isfinite(last)):
+            continue
+        places = line.places[::-1] if line.row.get("direction") == -1 else line.places   # driving lines run with the traffic
+        road = line.row.get("road")
+        made = road_line(road if isinstance(road, int) else 0, LEADING.index(line.output), places, min(first, last), max(first, last))
+        result += [made] if made is not None else []
+    if result or not lines:
+        return result
+    best = min(LEADING.index(line.output) if line.output in LEADING else len(LEADING) for line in lines)
+    candidates = [line.places for line in lines if (LEADING.index(line.output) if line.output in LEADING else len(LEADING)) == best]
+    joined = shapely.get_parts(shapely.line_merge(shapely.multilinestrings([shapely.linestrings(places) for places in candidates])))
+    longest = shapely.get_coordinates(max(joined, key=lambda line: line.length), include_z=True)
+    made = road_line(0, 0, longest, 0.0, float(np.hypot(*np.diff(longest[:, :2], axis=0).T).sum()))
+    return [made] if made is not None else []
+
+
+def accuracy_of(layers: dict[str, QgsMapLayer]) -> str:
+    """What the layers themselves say of their accuracy: the median along the lines of their sigma, and the confidence of the driving lines."""
+    sentences = []
+    for output, label in (("ROAD_EDGES", tr("road edges")), ("DRIVING_LINES", tr("driving lines"))):
+        sigma = _along(layers.get(output), "sigma_m", 0.5)
+        if math.isfinite(sigma):
+            sentences.append(tr("{what} {number:.1f} cm").format(what=label, number=100 * sigma))
+    trust = _along(layers.get("DRIVING_LINES"), "confidence", None)
+    if math.isfinite(trust):
+        sentences.append(tr("confidence {number:.2f}").format(number=trust))
+    return ", ".join(sentences) or tr("not stated")
+
+
+def _along(layer, name, quantile):
+    """The quantile (None: the mean) of a field along the lines of a layer; NaN where there is none."""
+    if layer is None or layer.fields().indexOf(name) < 0:
+        return math.nan
+    rows = [(feature[name], feature.geometry().length()) for feature in layer.getFeatures()]
+    values = np.array([row for row in rows if isinstance(row[0], (int, float))], float).reshape(-1, 2)
+    values = values[np.isfinite(values).all(axis=1) & (values[:, 1] > 0)]
+    if not len(values):
+        return math.nan
+    if quantile is None:
+        return float(np.average(values[:, 0], weights=values[:, 1]))
+    values = values[np.argsort(values[:, 0])]
+    return float(values[np.searchsorted(np.cumsum(values[:, 1]), quantile * values[:, 1].sum()), 0])
+
+
+# Sheets along the axes of roads: rectangles of one size, each turned so that the road runs along it from left to right.
+
+OVERLAP = 0.08        # of a sheet that the next one shows again
+MOST_HEIGHT = 0.9     # of a sheet's height that the road may take
+SHORTEST_REST = 1.0   # m of an axis that may lie on no sheet
+SHORTENED = 0.8       # by which the stretch of a sheet is shortened until it fits
+LEAST_REACH = 0.15    # of a sheet's width that it shows at least, however tight the bend
+
+
+@dataclass(frozen=True)
+class Match:
+    """Where a sheet ends and its neighbour goes on: a place on the axis, the axis's heading (radians from east), and the neighbour's number."""
+
+    x: float
+    y: float
+    heading: float
+    neighbour: int
+
+
+@dataclass
+class Sheet:
+    """One sheet: its number, and the ground that it shows, metres; `heading` is the direction of the page's right side, radians from east."""
+
+    number: int
+    x: float
+    y: float
+    heading: float
+    width: float
+    height: float
+    matches: list[Match] = field(default_factory=list)
+
+    def on_page(self, places: np.ndarray) -> np.ndarray:
+        """(N, 2) metres right of and below the upper left corner of the map, of (N, 2) places."""
+        delta = np.asarray(places, float)[:, :2] - (self.x, self.y)
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return np.c_[delta @ (cos, sin) + self.width / 2, self.height / 2 - delta @ (-sin, cos)]
+
+    def outline(self, shrunk: float = 0.0) -> Polygon:
+        """On the map, `shrunk` by a share of its width on all sides."""
+        w, h = self.width * (0.5 - shrunk), self.height / 2 - min(self.width * shrunk, self.height / 4)
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return Polygon([(self.x + u * cos - v * sin, self.y + u * sin + v * cos) for u, v in ((-w, -h), (w, -h), (w, h), (-w, h))])
+
+
+def sheets_along(axes: list[Axis], width: float, height: float) -> list[Sheet]:
+    """Sheets on which every metre of the axes lies; each overlaps those that show how the road goes on.
+
+    width, height : of the ground that a sheet shows, metres
+    """
+    sheets: list[Sheet] = []
+    for axis in axes:
+        left = [LineString(axis.places[:, :2])]
+        while left:
+            line = left.pop(0)
+            inner = shapely.union_all([sheet.outline(OVERLAP / 2) for sheet in sheets])
+            outer = shapely.union_all([sheet.outline() for sheet in sheets])
+            rest = max(_parts(line.difference(outer)), key=lambda part: part.length, default=None)
+            if rest is None or rest.length < SHORTEST_REST:
+                continue
+            shown = next(part for part in _parts(line.difference(inner)) if part.intersects(rest.interpolate(0.5, normalized=True).buffer(1e-6)))
+            new = _walk(shown, axis, axes, width, height, len(sheets) + 1)
+            _join(sheets, new, shown)
+            sheets += new
+            left = sorted(_parts(line.difference(shapely.union_all([sheet.outline() for sheet in new]))), key=lambda part: -part.length) + left
+    return sheets
+
+
+def _parts(geometry):
+    return [part for part in shapely.get_parts(geometry) if part.length > 0]
+
+
+def _walk(line, axis, axes, width, height, number):
+    """Sheets along one line of an axis; each reaches as far as the road stays on it, and all about as far."""
+    sheets, begin = [], 0.0
+    while begin < line.length - 1e-6:
+        reach = (line.length - begin) / math.ceil((line.length - begin) / (width * (1 - OVERLAP)) - 1e-9)
+        while True:
+            end = min(begin + reach, line.length)
+            places = np.array([line.interpolate(at).coords[0][:2] for at in np.linspace(begin, end, 41)])
+            sheet, fits = _sheet(places, axis, axes, width, height, number + len(sheets))
+            if fits or reach < LEAST_REACH * width:
+                break
+            reach *= SHORTENED
+        if sheets:
+            here = _heading(line, begin)
+            sheets[-1].matches.append(Match(*here, sheet.number))
+            sheet.matches.append(Match(*here, sheets[-1].number))
+        sheets.append(sheet)
+        begin = end
+    return sheets
+
+
+def _sheet(places, axis, axes, width, height, number):
+    """The sheet turned by the chord of a stretch, and whether the road fits on it; roads beside it are shown as a whole where there is room."""
+    chord = places[-1] - places[0]
+    heading = math.atan2(chord[1], chord[0])
+    turn = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
+    turned = places @ turn
+    (u, low), (u2, high) = turned.min(0), turned.max(0)
+    side = min(axis.half_width, 0.3 * height)
+    low, high = low - side, high + side
+    fits = u2 - u <= width * (1 - OVERLAP / 2) and high - low <= height * MOST_HEIGHT
+    for other in axes:
+        beside = other.places[:, :2] @ turn
+        beside = beside[(beside[:, 0] > u) & (beside[:, 0] < u2), 1]
+        if len(beside) > 1:
+            lower, upper = min(low, beside.min() - other.half_width), max(high, beside.max() + other.half_width)
+            if upper - lower <= height * MOST_HEIGHT:
+                low, high = lower, upper
+    x, y = turn @ ((u + u2) / 2, (low + high) / 2)
+    return Sheet(number, float(x), float(y), heading, width, height), fits
+
+
+def _heading(line, at):
+    """x, y and heading of a line at a length along it."""
+    x, y = line.interpolate(at).coords[0][:2]
+    first, last = (np.array(line.interpolate(min(max(at + step, 0.0), line.length)).coords[0][:2]) for step in (-1.0, 1.0))
+    return x, y, math.atan2(*(last - first)[::-1])
+
+
+def _join(sheets, new, line):
+    """Match lines where the ends of a new stretch lie on an earlier sheet."""
+    for sheet, at in ((new[0], 0.0), (new[-1], line.length)) if new else ():
+        here = _heading(line, at)
+        place = shapely.Point(here[:2])
+        around = [earlier for earlier in sheets if earlier.outline().covers(place)]
+        if around:
+            neighbour = max(around, key=lambda one: one.outline().exterior.distance(place))
+            neighbour.matches.append(Match(*here, sheet.number))
+            sheet.matches.append(Match(*here, neighbour.number))

@@ -11,9 +11,8 @@ from scipy.spatial import cKDTree
 
 from ...core.common.arrays import round_step
 from ...processing_provider.texts import tr
-from .axes import Axis
+from .axes import Axis, MapLine
 from .drawing import DARK, GREY, Drawing, station_text, text_width
-from .map_lines import MapLine
 
 EXAGGERATIONS = (10, 5, 2, 1)   # heights of a profile are drawn so many times as large as lengths
 REDUCED = (1, 2, 4)   # times smaller than the plan that a profile may be: the first scale at which a page shows PER_PAGE sheets

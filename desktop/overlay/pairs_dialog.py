@@ -230,7 +230,7 @@ class PairsDialog(QDialog):
 
     def _pointed(self, one, dialog, result):
         if result == QDialog.DialogCode.Accepted:
-            one.lies_about(dialog.layer)
+            one.forget(dialog.layer)
             self._show_pairs()
         self.two_points = None
         dialog.deleteLater()
@@ -264,7 +264,7 @@ class PairsDialog(QDialog):
                 else:
                     one.placed = tr("On the map: {file}").format(file=Path(str(run.results.get("OUTPUT", ""))).name)
             elif "CONTROL_POINTS" in run.parameters:
-                one.failed_because(run.reason)
+                one.forget(why=run.reason)
             else:
                 one.placed = run.reason
         finally:  # or the window would wait for ever
@@ -417,12 +417,9 @@ class ImagePairs:
         self._layer, self.failed, self.placed = layer.id(), "", ""
         layer.setName(tr("Control points of {image}").format(image=Path(self.path).stem))
 
-    def lies_about(self, rough: QgsVectorLayer) -> None:
-        """Take two rough points; pairs found before are forgotten."""
-        self.rough, self._layer, self.failed = rough, "", ""
-
-    def failed_because(self, reason: str) -> None:
-        self._layer, self.failed = "", reason
+    def forget(self, rough: QgsVectorLayer | None = None, why: str = "") -> None:
+        """Forget the pairs: two rough points were given, or there is a reason why none were found."""
+        self.rough, self._layer, self.failed = self.rough if rough is None else rough, "", why
 
     def rows(self) -> list:
         """The features of the layer, in order of their names."""

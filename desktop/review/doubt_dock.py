@@ -88,8 +88,6 @@ class DoubtDock(QDockWidget):
         self.where = wrapped()
         back = self._button("◀", tr("The place before"), lambda: self.go(self.road_map, -1), "P")
         ahead = self._button("▶", tr("The next place"), lambda: self.go(self.road_map), "N")
-        for arrow in (back, ahead):
-            arrow.setFixedWidth(34)
         self.kinds = choices(((tr("Everything"), ""), (tr("Road edges"), "edge"), (tr("Road surface"), "surface"), (tr("Marking lines"), "marking"),
                               (tr("Lanes"), "lane"), (tr("Warnings"), "warning")), self._begin_again)
         self.order = choices(((tr("The most doubtful first"), True), (tr("Along the road"), False)), self._begin_again)

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsCoordinateTransform, QgsCsException, QgsLayerTree, QgsMapLayer, QgsProject, QgsRectangle, QgsSettings
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsLayerTree,
+    QgsMapLayer,
+    QgsProject,
+    QgsRectangle,
+    QgsSettings,
+)
 
 from .road_maps import LINES, OUTPUT, describe_origin, origin_of, road_map_of, runs_of
 from .runs import Run
@@ -91,7 +100,8 @@ def _lay_under_map(image, this, project):
     root = project.layerTreeRoot()
     for road_map in runs_of(project):
         lines = [layer for layer in map(road_map.layer, LINES) if layer is not None]
-        if road_map.group in (None, this.group) or not any(_overlap(image, line, project) for line in lines):
+        if road_map.group in (None, this.group) or not any(
+                brought_to(image.extent(), image.crs(), line.crs()).intersects(line.extent()) for line in lines):
             continue
         below = {layer.id() for layer in map(road_map.layer, BELOW_IMAGES) if layer is not None}
         rows = [row for row, node in enumerate(road_map.group.children()) if QgsLayerTree.isLayer(node) and node.layerId() in below]
@@ -103,10 +113,9 @@ def _lay_under_map(image, this, project):
         return
 
 
-def _overlap(one, other, project):
-    """Whether the extents of two layers overlap."""
+def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:
+    """An extent in another CRS; an empty one where it has no place there."""
     try:
-        extent = QgsCoordinateTransform(one.crs(), other.crs(), project).transformBoundingBox(one.extent())
+        return QgsCoordinateTransform(source, target, QgsProject.instance()).transformBoundingBox(extent)
     except QgsCsException:
-        return False
-    return QgsRectangle(extent).intersects(other.extent())
+        return QgsRectangle()

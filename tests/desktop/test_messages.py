@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from lanewright.desktop import widgets as messages
-from lanewright.desktop.runs_window import RunsWindow
+from lanewright.desktop.menu import RunsWindow
 from lanewright.desktop.widgets import tell_result
 from lanewright.processing_provider.results import runs as run_table
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer

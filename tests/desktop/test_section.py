@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import CURB_POINTS, DRIVING_LINES, ROAD_EDGES
 from lanewright.core.road.scanlines.section_planes import slice_lines
-from lanewright.desktop.review import section_view
+from lanewright.desktop.review import section_dock
 from lanewright.desktop.review.doubtful import doubts_of, reason
 from lanewright.desktop.review.section import Crossing, Section, corners, crossings, middle_of, section_at
-from lanewright.desktop.review.section_view import SectionView
+from lanewright.desktop.review.section_dock import SectionView
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis.PyQt.QtGui import QFontMetricsF
 from road_map_layers import EAST, NORTH, added
@@ -122,7 +122,7 @@ def test_what_the_axes_mean_is_read_whole_however_narrow_the_window(qgis_app, wi
     view = SectionView()
     view.resize(width, 300)
     place = view._caption()
-    words = QFontMetricsF(view._small(), view).boundingRect(place, section_view.CAPTION, section_view.caption())
+    words = QFontMetricsF(view._small(), view).boundingRect(place, section_dock.CAPTION, section_dock.caption())
     assert place.contains(words) and view._frame().bottom() < place.top() and view._frame().height() > 100
 
 

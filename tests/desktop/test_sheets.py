@@ -14,13 +14,10 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, MARKING_LINES, ROAD_EDGES
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
-from lanewright.desktop.layout.axes import axes_of, road_line
+from lanewright.desktop.layout.axes import OVERLAP, accuracy_of, axes_of, lines_of, road_line, road_lines, sheets_along
 from lanewright.desktop.layout.charts import profile_pages, section_pages
-from lanewright.desktop.layout.map_lines import accuracy_of, lines_of, road_lines
-from lanewright.desktop.layout.pages import OVERLAP, sheets_along
-from lanewright.desktop.layout.print_sheets import unused_name, write_pdf
-from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout
-from lanewright.desktop.layout.shown import credit_of, sheet_values, shown_layers
+from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout, unused_name, write_pdf
+from lanewright.desktop.menu import credit_of, sheet_values, shown_layers
 from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis import processing

@@ -3,7 +3,7 @@
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.library import algorithms
-from lanewright.library.values import checked_values
+from lanewright.library.call import checked_values
 
 NEEDED = {"samplesurvey": {"POINT_CLOUD": "s.laz", "TRAJECTORY": "t.gpkg"}, "roadmap": {"POINT_CLOUDS": ["a.laz"], "TRAJECTORY": "t.csv"},
           "georeferenceimage": {"IMAGE": "i.tif", "OUTPUT": "o.tif"}}

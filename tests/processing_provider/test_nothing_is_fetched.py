@@ -1,7 +1,7 @@
 """In QGIS as well no server is asked for what a file says; of layers that the user has from a server, it is."""
 
 import pytest
-from lanewright.processing_provider.input_files import asks_servers
+from lanewright.processing_provider.call import asks_servers
 from listening_server import RASTERS, VECTORS, listening, written
 from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsVectorLayer
 

@@ -155,9 +155,10 @@ class Candidates:
         """Some of the intervals."""
         return Candidates(**{name: values[intervals] for name, values in vars(self).items()})
 
-    def at_end(self, end: int) -> Candidates:
-        """The boundaries where the intervals begin, 0, or where they end, 1."""
-        return replace(self, left=self.left + self.drift[..., end], right=self.right + self.drift[..., end])
+    def at_end(self, end: int, which: np.ndarray) -> Candidates:
+        """The boundaries where the intervals begin, 0, or where they end, 1, in those of them that are meant, (I,) bool."""
+        moved = which[:, None] * self.drift[..., end]
+        return replace(self, left=self.left + moved, right=self.right + moved)
 
     @property
     def length(self) -> np.ndarray:

@@ -478,7 +478,8 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
         check_cancelled()
         intervals = known[first:first + INTERVALS_AT_ONCE + 1]
         window = slice(first, first + len(intervals) - 1)
-        before, behind = (_occupancy(candidates.take(of).at_end(end), sections.take(of), lane_width) for of, end in (
+        # over a gap they do not meet
+        before, behind = (_occupancy(candidates.take(of).at_end(end, np.diff(intervals) == 1), sections.take(of), lane_width) for of, end in (
             (intervals[:-1], 1), (intervals[1:], 0)))
         changed, turned = _transition_costs(before, behind, weights)
         lanes, directions = (share[window, None, None] for share in left)

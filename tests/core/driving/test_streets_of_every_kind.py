@@ -290,14 +290,15 @@ def test_beyond_the_last_dash_a_lane_goes_on_as_it_was_driven(borders):
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_beyond_its_paint_a_lane_leads_no_farther_than_an_island_on_it(side):
+@pytest.mark.parametrize(("begins", "ends_at"), [(106.0, 105.5), (101.0, 97.5)])
+def test_beyond_its_paint_a_lane_leads_no_farther_than_an_island_on_it_and_three_metres_to_one_are_not_worth_it(begins, ends_at, side):
     street = Street(vehicle=-1.75).paint(0.0, 5.0, 98.0, pattern="dashed")
-    edges, along = curbs(street, 3.5, -3.5), np.arange(106.0, 114.0, 0.5)
+    edges, along = curbs(street, 3.5, -3.5), np.arange(begins, 114.0, 0.5)
     for chain, offset in enumerate((side * 0.2, side * 1.0), start=2):
         edges.add(LineString(np.c_[street.places(along, offset), np.full(len(along), HEIGHT)]), road=0, kind="island", edge="curb", status="measured",
                   part="bottom", chain=chain, side="left")
     ends = [line.bounds[2] for line, row in street.lanes(edges=edges)[0] if row["direction"] == -side]
-    assert max(ends) - EAST == pytest.approx(105.5, abs=0.6)
+    assert max(ends) - EAST == pytest.approx(ends_at, abs=0.6)
 
 
 def test_pockets_that_face_each_other_over_a_junction_are_two_lanes_and_the_median_before_them_is_none():
