@@ -145,10 +145,9 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
      "Die Spalte 't' von a.csv steigt um 1.2e-05 von Zeile zu Zeile, als würden Tage gezählt, aber 7.5 ist kein Tag einer bekannten Zählung (MJD, "
      "julianisches Datum, Tabellenkalkulation). Nötig sind GPS-Sekunden: die Trajektorie mit diesen exportieren."),
     ("The heights of the cloud alone seem to be in feet where x and y are in metres: the laser beams meet in the scanner only if heights are "
-     "multiplied by 0.3048. Curbs are missed, and heights and slopes are wrong by that factor. Convert these heights, and run again.",
+     "multiplied by 0.3048. Convert these heights, and run again.",
      "Die Höhen der Wolke allein sind anscheinend in Fuß, während x und y in Metern sind: Die Laserstrahlen treffen sich nur dann im Scanner, wenn "
-     "die Höhen mit 0.3048 multipliziert werden. Bordsteine werden übersehen, Höhen und Neigungen sind um diesen Faktor falsch. Diese Höhen "
-     "umrechnen und neu starten."),
+     "die Höhen mit 0.3048 multipliziert werden. Diese Höhen umrechnen und neu starten."),
     ("Corrections that match nothing in this run any more (2): road 0, left side, station 260 to 270 m; road 0, right side, station 90 to 100 m.",
      "Korrekturen, die in diesem Lauf zu nichts mehr passen (2): Straße 0, Seite links, Station 260 bis 270 m; "
      "Straße 0, Seite rechts, Station 90 bis 100 m."),

@@ -5,7 +5,7 @@ depends on a millimetre. The ground cells of a row show it surely: the lines thr
 are apart where the curb is. Their distance is taken along the line that leads from the curb before a gap to the curb behind it. The median of some
 rows counts. It must stand above what the same rows show on the road beside the curb, where nothing steps. Across the mouth of a street, and behind a
 curb that leaves its line for a bulb-out, the two lines are one. Where no line leads across, nothing goes on: at a corner a lowered curb bends, and
-no line of its own says how.
+no line of its own says how. But it goes straight on to the place where a corner begins.
 """
 
 from __future__ import annotations
@@ -54,10 +54,17 @@ def _line_across(near, before, behind, road, look):
     k = int(np.searchsorted(near["s"], before, side="right")) - 1
     if not 0 <= k < len(near) - 1 or behind - before > CURBS.max_hidden_gap:
         return None
+    lengths = near["s"][k] - near["s"][0], near["s"][-1] - near["s"][k + 1]
     # of less curb the direction is not known, and a bend through a single place may lead anywhere
-    bends = min(near["s"][k] - near["s"][0], near["s"][-1] - near["s"][k + 1]) >= CURBS.min_bend_length
+    bends = min(lengths) >= CURBS.min_bend_length
+    limit = CURBS.max_lowered_turn if bends else IN_LINE_TURN
     turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k, 1 + bends)
-    if line is None or turn > (CURBS.max_lowered_turn if bends else IN_LINE_TURN):
+    if turn > limit and not bends and max(lengths) >= CURBS.min_bend_length:
+        # where the shorter end turns off at once, its tip still lies straight on from the other; that is surer the shorter the gap is
+        near, k = (near[:k + 2], k) if lengths[0] > lengths[1] else (near[k:], 0)
+        limit *= max(lengths) / (max(lengths) + 2.0 * (behind - before))
+        turn, line, axes = line_across(near, np.ascontiguousarray(near["s"]), k, 1)
+    if line is None or turn > limit:
         return None
     stations, offsets = line.between(look.cells.row_size)
     if axes == "xy":
@@ -77,18 +84,9 @@ def _seen_between(near, look, first, last, offsets):
     s = s[(s > first) & (s < last)]
     u = offsets(s)
     lowered, height, bottom = look.steps_up(s, u, near["height"].max())
-    runs = [(a, b) for a, b in mask_runs(lowered) if b - a >= CURBS.min_piece_steps]
-    reached = {*_reached(runs, s, first), *_reached(runs[::-1], s, last)}
+    runs = np.array([run for run in mask_runs(lowered) if np.ptp(run) >= CURBS.min_piece_steps], int).reshape(-1, 2)
+    parted = np.r_[s[runs[:, 0]], last] - np.r_[first, s[runs[:, 1] - 1]] > CURBS.max_joined_gap
+    reached = ~(np.logical_or.accumulate(parted)[:-1] & np.logical_or.accumulate(parted[::-1])[-2::-1])
     return [dict(s=float(s[k]), u=float(u[k]), h=float(bottom[k]),
                  fields=dict(status="bridged", height=round(float(height[k]), 4), part="bottom"))
-            for run in sorted(reached) for k in range(*run)]
-
-
-def _reached(runs, s, tip):
-    """Those of the runs of rows, in order, that lead on from a place at station `tip`, m, or from the run before."""
-    for number, (a, b) in enumerate(runs):
-        begin, end = sorted((s[a], s[b - 1]), key=lambda at: abs(at - tip))
-        if abs(begin - tip) > CURBS.max_joined_gap:
-            return runs[:number]
-        tip = end
-    return runs
+            for run in runs[reached] for k in range(*run)]

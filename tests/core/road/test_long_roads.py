@@ -8,6 +8,7 @@ from curbed_streets import EAST, NORTH
 from lanewright.core.execution.phase import Threads
 from lanewright.core.road.common import tracking
 from lanewright.core.road.common.corners import CurbSteps
+from lanewright.core.road.common.pseudo_scanlines import nearest_distance
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimit
 from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
@@ -207,8 +208,8 @@ def test_where_a_pavement_edge_crosses_curbs_is_what_all_curbs_together_tell():
     met = shapely.get_coordinates(shapely.intersection(shapely.linestrings(line.vertices[:, :2]), shapely.union_all(curbs)))
     np.testing.assert_allclose(np.sort(pavement_lines._crossings(line, tree)), np.sort(met[:, 0] - EAST), atol=1e-6)
     places = np.arange(0.0, 40.0, 0.5)
-    np.testing.assert_array_equal(pavement_lines._distance(places, np.array([30.0, 7.0])), np.minimum(np.abs(places - 7.0), np.abs(places - 30.0)))
-    assert np.isinf(pavement_lines._distance(places, np.empty(0))).all()
+    np.testing.assert_array_equal(nearest_distance(places, np.array([30.0, 7.0])), np.minimum(np.abs(places - 7.0), np.abs(places - 30.0)))
+    assert np.isinf(nearest_distance(places, np.empty(0))).all()
 
 
 class Counting(Threads):

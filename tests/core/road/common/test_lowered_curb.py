@@ -1,5 +1,7 @@
 """Curbs lowered for drives and crossings go on along their line, and nothing goes on across mouths of streets and behind bulb-outs."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import shapely
@@ -32,9 +34,9 @@ def with_bulb_out(points, depth, stretch=STRETCH):
     return x, y, z, time
 
 
-def turned_away(x):
-    """m by which a curb that bends away from the road before the end of the lowered stretch lies farther out, on an arc of 12 m."""
-    return np.clip(STRETCH[1] - x, 0.0, None)**2 / 24.0
+def turned_away(x, end=STRETCH[1], radius=12.0):
+    """m by which a curb that bends away from the road before a station, m, lies farther out, on an arc of that radius, m."""
+    return np.clip(end - x, 0.0, None)**2 / (2.0 * radius)
 
 
 def edges_of(points, backwards=False, bend=np.zeros_like):
@@ -93,6 +95,18 @@ def test_around_a_corner_of_which_only_a_metre_is_seen_behind_it_a_lowered_curb_
     x, y, z, time = lowered(street(open_left=[(-10.0, STRETCH[0] - 1.5)], seed=seed), 0.025)
     around = x, y + turned_away(x) * np.clip(y / OFFSET, 0.0, 1.0), z, time
     assert max(off for *_, off, _ in edges_of(around, bend=turned_away)) < 0.1
+
+
+@pytest.mark.parametrize("low", [0.02, 0.03])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_lowered_curb_goes_straight_on_to_the_place_where_a_corner_begins_of_which_little_is_seen(low, seed):
+    begin = STRETCH[0] - RAMP / 2
+    corner = partial(turned_away, end=begin, radius=3.0)
+    x, y, z, time = lowered(street(open_left=[(-10.0, begin - 2.0)], seed=seed), low)
+    around = x, y + corner(x) * np.clip(y / OFFSET, 0.0, 1.0), z, time
+    pieces = edges_of(around, bend=corner)
+    assert length(pieces, "dropped") > 5.0
+    assert max(off for *_, off, what in pieces if what == "dropped") < 0.05
 
 
 @pytest.mark.parametrize("noise", [0.003, 0.008])
