@@ -46,6 +46,7 @@ def in_step(works: Sequence[Work], executor: Executor, progress: Progress = Prog
         until = max((one.until for one in asked.values()), default=1.0)
         answers = dict(zip(asked, _answered([*asked.values()], executor, progress.part(begin, until))))
         begin = until
+    progress.report(1.0)
     return results
 
 
