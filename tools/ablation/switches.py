@@ -68,6 +68,12 @@ def as_list(rows, *_):
     return list(rows)
 
 
+def work_as_list(rows, *_):
+    """The same where phases of other roads are run together with those of the rule: a work that asks for none."""
+    yield from ()
+    return list(rows)
+
+
 def all_of(k):
     """True for each row of an argument."""
     return lambda *arguments: np.ones(len(arguments[k]), bool)
@@ -169,7 +175,7 @@ ROWS = (
     *_room("curb returns", "road.curb_returns",
         ("all curb returns", "detect:with_curb_returns", nth(0), "crossing, roundabout", "."),
         ("faint curbs", "leading:with_led_on", as_list, "curbs dropped to 1 or 2 cm, noisy scanner", "leading:with_led_on faint:led_on"),
-        ("curbs beyond the corridor", "beyond_corridor:with_curbs_beyond", as_list, "roundabout, crossing",
+        ("curbs beyond the corridor", "beyond_corridor:with_curbs_beyond", work_as_list, "roundabout, crossing",
          "beyond_corridor:with_curbs_beyond ground.arc_ground:GroundAboutArc"),
         ("steps followed", "following:followed_steps", _no_steps, "crossing, ground of few points"),
         ("steps followed by few points", "following:_few_all_around",
@@ -289,7 +295,8 @@ ROWS = (
          "country road with a centre line alone"),
         ("wide lines", "cross_section.candidates:_wide_share", lambda lines: np.full(lines.d.spans.size, np.nan), "streets with a bus lane"),
         ("slivers and doubled ends", "cross_section.candidates:_superfluous", lambda entries, _: np.zeros(len(entries["d"]), bool)),
-        ("streets without paint", "cross_section.roads:_driven_bare", gives(np.empty(0)), "residential street, one-way street without paint"),
+        ("streets without paint", "cross_section.roads:_driven_bare", gives((np.empty(0), np.empty(0))),
+         "residential street, one-way street without paint"),
         ("where one drives beside a curb", "cross_section.beside:_driven_beside", lambda offset, *_: (np.zeros(offset.shape[1]),) * 2,
          "main streets whose lanes reach up to the curb, and those with gutters"),
         ("lanes beside islands", "cross_section.sequence:beside_island", gives(np.zeros((), bool)), "island beside an edge line"),
