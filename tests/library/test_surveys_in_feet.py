@@ -22,7 +22,7 @@ LAYERS = ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "
 def surveys(made_once):
     """{"feet", "metres": (cloud, trajectory)} of one street with a bend."""
     street = made_once("street_with_a_bend", lambda folder: run(
-        "samplesurvey", LENGTH=90, PULSE_RATE=80_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
+        "samplesurvey", LENGTH=130, PULSE_RATE=80_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
     folder = made_once("survey_in_feet", lambda folder: _write(street, folder))
     return {name: (str(folder / f"{name}.laz"), str(folder / f"{name}.csv")) for name in ("feet", "metres")}
 
@@ -144,7 +144,7 @@ def test_open_drive_and_lanelets_are_in_metres_and_degrees(maps, tmp_path):
     np.testing.assert_allclose(*places, atol=1e-8)
     run("importopendrive", INPUT=tmp_path / "feet.xodr", CRS="EPSG:2263", LANES=tmp_path / "lanes.gpkg")
     with fiona.open(tmp_path / "lanes.gpkg") as back, fiona.open(maps["feet"]["LANES"]) as lanes:
-        assert back.crs.to_epsg() == 2263 and back.bounds == pytest.approx(lanes.bounds, abs=0.3)
+        assert back.crs.to_epsg() == 2263 and back.bounds == pytest.approx(lanes.bounds, abs=0.5)
 
 
 def test_cad_files_have_the_feet_of_the_layers(maps, tmp_path):
