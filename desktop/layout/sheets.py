@@ -361,8 +361,9 @@ class _Pages:
         """What the red line and the figures on the map say, between arrow and scale."""
         x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 8
         paper.line([(x, y), (x + 8, y)], AXIS, 0.25, "5 1 0.6 1")
-        rows = [("", tr("Axis with stations")), *((figure, text) for figure, text, least in (
-            ("R 85", tr("Radius (m)"), 1500), ("3.40", tr("Width of the lane (m)"), 750), ("12 cm", tr("Height of the curb"), 400)) if self.scale <= least)]
+        figures = (("", tr("Axis with stations"), math.inf), ("R 85", tr("Radius (m)"), 1500), ("3.40", tr("Width of the lane (m)"), 750),
+                   ("12 cm", tr("Height of the curb"), 400))   # each with the smallest scale at which the styles write it
+        rows = [(figure, text) for figure, text, least in figures if self.scale <= least]
         for row, (figure, text) in enumerate(rows):
             paper.text(x, y + 3.2 * row, figure, 5.5, "start")
             paper.text(x + 10, y + 3.2 * row, text, 5.5, "start")
