@@ -88,7 +88,7 @@ def _draw_profile(drawing, axis, first, last, top, strip, scale, times, named):
         y = float(y_of(z))
         if y > top + 9:
             drawing.line([(LEFT, y), (right, y)], "#c8c8c8", 0.1)
-            drawing.text(LEFT - 1.5, y, f"{z:.{0 if least >= 1 else 1 if least >= 0.1 else 2}f}", 6.0, "end")
+            drawing.text(LEFT - 1.5, y - (1.5 if z == datum else 0), f"{z:.{0 if least >= 1 else 1 if least >= 0.1 else 2}f}", 6.0, "end")
     drawing.text(1, base + 2.6, tr("Datum {height:.2f} m").format(height=datum), 5.0, "start", colour=GREY)
     drawing.line([(LEFT, top + 9), (LEFT, top + strip - 2), (right, top + strip - 2), (right, top + 9)], width=0.2)
     rows = base + np.array([0.0, 13.0, 21.0, 28.0])

@@ -11,6 +11,7 @@ import shapely
 from qgis.core import (
     Qgis,
     QgsExpressionContextUtils,
+    QgsFillSymbol,
     QgsLayerTreeModelLegendNode,
     QgsLayoutItemLegend,
     QgsLayoutPoint,
@@ -23,6 +24,7 @@ from qgis.core import (
     QgsMapLayerLegendUtils,
     QgsPrintLayout,
     QgsRenderContext,
+    QgsSimpleLineSymbolLayer,
     QgsSymbolLegendNode,
     QgsTextFormat,
 )
@@ -105,6 +107,7 @@ TITLES, ENTRY = 12.0, 6.5        # mm: titles and margins of the legend, and eac
 SIZES = ((8.0, 7.0, 4.0), (7.0, 6.0, 3.0), (6.0, 5.0, 2.0))  # letters of titles and entries, points, and symbols, mm: the first that fits
 FONT = "DejaVu Sans"
 DPI = 300.0                      # of the measurement; any would do
+ASPHALT, WHITE, GROUND = QColor("#8d9299"), 200, 3.0   # of the road plan; lightness of paint; mm of asphalt below a painted line
 STYLES = (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.Symbol,
           QgsLegendStyle.Style.SymbolLabel)
 
@@ -159,13 +162,10 @@ def add_legend(layout: QgsPrintLayout, classes: dict[QgsMapLayer, set[str]], roo
     root = legend.model().rootGroup()
     root.clear()
     for layer, keys in classes.items():
-        node = root.addLayer(layer)
-        _leave_out_empty_classes(legend, node, keys)
-        _print_as_it_stands(legend, node, layer)
+        _add_classes(legend, root.addLayer(layer), layer, keys)
     legend.setResizeToContents(False)  # by its own measure the last letters would stand beside its ground
     legend.setSplitLayer(False)
     legend.setEqualColumnWidth(False)
-    legend.setBackgroundColor(QColor(186, 191, 196))  # white paint is seen on it, and letters can be read
     legend.setColumnSpace(3)
     for title, entry, symbol in SIZES:
         legend.setSymbolHeight(symbol)
@@ -195,20 +195,31 @@ def _size(layout, legend):
     return QgsLegendRenderer(legend.model(), settings).minimumSize(QgsLayoutUtils.createRenderContextForLayout(layout, None, DPI))
 
 
-def _leave_out_empty_classes(legend, node, classes):
-    key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
-    order = [row for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)) if str(entry.data(key)) in classes]
-    if order:
-        QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
-        legend.model().refreshLayerLegend(node)
-
-
-def _print_as_it_stands(legend, node, layer):
-    """Let no expression in the names of a layer and of its classes be evaluated."""
+def _add_classes(legend, node, layer, keys):
+    """List the classes with these keys; no expression in the names of a layer and of its classes is evaluated."""
     if "[%" in layer.name():
         node.setCustomProperty("legend/title-label", as_it_stands(layer.name()))
+    key = QgsLayerTreeModelLegendNode.LegendNodeRoles.RuleKeyRole
+    order = []
     for row, entry in enumerate(legend.model().layerOriginalLegendNodes(node)):
-        label = entry.symbolLabel() if isinstance(entry, QgsSymbolLegendNode) else ""
-        if "[%" in label:
-            QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(label))
-            legend.model().refreshLayerLegend(node)
+        if str(entry.data(key)) in keys:
+            order.append(row)
+        if isinstance(entry, QgsSymbolLegendNode):
+            if "[%" in entry.symbolLabel():
+                QgsMapLayerLegendUtils.setLegendNodeUserLabel(node, row, as_it_stands(entry.symbolLabel()))
+            QgsMapLayerLegendUtils.setLegendNodeCustomSymbol(node, row, _on_asphalt(entry.symbol()))
+    if order:
+        QgsMapLayerLegendUtils.setLegendNodeOrder(node, order)
+    legend.model().refreshLayerLegend(node)
+
+
+def _on_asphalt(symbol):
+    """The symbol of a class; that of white paint on the grey it lies on, for on white paper it would not be seen."""
+    shown = symbol.clone()
+    tones = [part.color().lightness() for part in shown.symbolLayers()]
+    if max(tones) < WHITE or min(tones) < ASPHALT.lightness() - 10:
+        return shown
+    if symbol.type() == Qgis.SymbolType.Line:
+        shown.insertSymbolLayer(0, QgsSimpleLineSymbolLayer(ASPHALT, GROUND))
+        return shown
+    return QgsFillSymbol.createSimple({"color": "white", "outline_color": ASPHALT.name(), "outline_width": "1"})

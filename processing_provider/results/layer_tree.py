@@ -59,6 +59,9 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
         _hide_former(output, road_map, former, project)
     if output in IMAGES and road_map.group is not None:
         _lay_under_map(layer, road_map, project)
+    image = road_map.layer("INTENSITY_IMAGE")
+    if image is not None and output in ("INTENSITY_IMAGE", "ROAD_SURFACE") and road_map.layer("ROAD_SURFACE") is not None:
+        project.layerTreeRoot().findLayer(image.id()).setItemVisibilityChecked(False)   # of what lies under asphalt only a dark fringe is seen
 
 
 def _renew_group(node, run, project):

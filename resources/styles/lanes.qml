@@ -244,7 +244,7 @@
  </selection>
  <labeling type="rule-based">
   <rules key="{c0886df8-e9f5-5421-8b04-0ffe71a5c535}">
-   <rule filter="&quot;type&quot; in ('driving', 'bicycle', 'parking', 'shoulder') and &quot;length_m&quot; > 8" scalemaxdenom="750" key="{b1182fdd-7195-5ebb-a652-2fb42a723079}">
+   <rule filter="&quot;type&quot; in ('bicycle', 'parking', 'shoulder') and &quot;length_m&quot; > 8" scalemaxdenom="750" key="{b1182fdd-7195-5ebb-a652-2fb42a723079}">
     <settings calloutType="simple">
      <text-style fieldName="format_number(&quot;width_m&quot;, 2)" fontWeight="50" forcedItalic="0" useSubstitutions="0" capitalization="0" fontSizeMapUnitScale="3x:0,0,0,0,0,0" tabStopDistanceUnit="Percentage" textOrientation="horizontal" legendString="Aa" textColor="29,31,34,255,rgb:0.11372549019607843,0.12156862745098039,0.13333333333333333,1" fontSize="7" fontUnderline="0" fontStrikeout="0" fontLetterSpacing="0" textOpacity="1" blendMode="0" tabStopDistanceMapUnitScale="3x:0,0,0,0,0,0" fontItalic="0" fontWordSpacing="0" fontSizeUnit="Point" multilineHeightUnit="Percentage" previewBkgrdColor="255,255,255,255,rgb:1,1,1,1" fontKerning="1" fontFamily="Noto Sans" allowHtml="0" isExpression="1" tabStopDistance="6" forcedBold="0" namedStyle="" multilineHeight="1">
       <families/>
