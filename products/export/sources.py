@@ -12,7 +12,6 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ...core.common.arrays import linked_groups, members_of
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import COLOUR, DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
 from ...core.driving.layers import Lanes
@@ -357,9 +356,12 @@ def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
 
 def _groups(shapes: list[Any]) -> list[list[Any]]:
     """Shapes that lie together."""
-    flat = shapely.force_2d(np.array(shapes, object))
-    near = shapely.STRtree(flat).query(flat, predicate="dwithin", distance=STRIPE_GAP)
-    return [[shapes[k] for k in rows] for _, rows in members_of(linked_groups(*near, len(shapes)))]
+    joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
+    groups: list[list[Any]] = [[] for _ in joined]
+    tree = shapely.STRtree(joined)
+    for shape in shapes:
+        groups[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
+    return [group for group in groups if group]
 
 
 def _corners(shape: Any) -> np.ndarray:
