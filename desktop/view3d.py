@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import shapely
 from qgis.core import (
     Qgis,
     QgsColorRampShader,
@@ -14,13 +15,9 @@ from qgis.core import (
     QgsFillSymbol,
     QgsGeometry,
     QgsGradientColorRamp,
-    QgsLineString,
-    QgsMultiPolygon,
     QgsNullSymbolRenderer,
-    QgsPoint,
     QgsPointCloudExtentRenderer,
     QgsPointCloudLayer,
-    QgsPolygon,
     QgsProcessingUtils,
     QgsProject,
     QgsProperty,
@@ -110,15 +107,14 @@ def _curb_walls(edges):
     for feature in edges.getFeatures():
         if feature["edge"] == "pavement" or feature["part"] == "top":
             continue
-        stones = QgsMultiPolygon()
-        vertices = list(feature.geometry().vertices())
-        for a, b in zip(vertices, vertices[1:]):
-            length = a.distance(b) or 1.0
-            across = CURB_WIDTH / 2 * (b.y() - a.y()) / length, CURB_WIDTH / 2 * (a.x() - b.x()) / length
-            stones.addGeometry(QgsPolygon(QgsLineString([QgsPoint(end.x() + side * across[0], end.y() + side * across[1], end.z())
-                                                         for end, side in ((a, 1), (a, -1), (b, -1), (b, 1), (a, 1))])))
+        places = shapely.get_coordinates(shapely.from_wkb(bytes(feature.geometry().asWkb())), include_z=True)
+        way = np.diff(places[:, :2], axis=0)
+        across = np.c_[way[:, 1], -way[:, 0], np.zeros(len(way))] * (CURB_WIDTH / 2 / np.fmax(np.hypot(*way.T), 1e-6))[:, None]
+        stones = QgsGeometry()
+        stones.fromWkb(shapely.to_wkb(shapely.multipolygons(shapely.polygons(np.stack(
+            [places[:-1] + across, places[:-1] - across, places[1:] - across, places[1:] + across], axis=1)))))
         wall = QgsFeature(made.fields())
-        wall.setGeometry(QgsGeometry(stones))
+        wall.setGeometry(stones)
         wall["height_m"] = feature["height_m"] or UNKNOWN_HEIGHT
         made.dataProvider().addFeatures([wall])
     # a file: of layers in memory QGIS 3.40 knows no heights, and shows nothing
