@@ -19,8 +19,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import Pass
-from ..frame.road_frame import RoadFrame
+from ..frame.road_frame import Pass, RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
