@@ -6,28 +6,26 @@ import io
 import os
 import struct
 
+import laspy
+import lazrs
 import numpy as np
 
-HEADER, RECORD, LONG_RECORD = 375, 54, 60   # bytes
-COMPRESSED = 0x80
 
-
-def write_copc(cloud, path: str | os.PathLike[str], deepest: int = 3, in_a_node: int = 2000) -> str:
-    """Write a laspy.LasData of point format 6, 7 or 8 as COPC; returns the path.
+def write_copc(cloud: laspy.LasData, path: str | os.PathLike[str], deepest: int = 3, in_a_node: int = 2000) -> str:
+    """Write points of point format 6, 7 or 8 as COPC; returns the path.
 
     `in_a_node` points, spread over the node, stay in it, the others go to its eight parts, down to level `deepest`, which takes all that come.
     """
-    import lazrs
-
     places = np.stack([np.asarray(cloud[name], float) for name in "xyz"], axis=1)
     middle, half = (places.max(axis=0) + places.min(axis=0)) / 2, np.ptp(places, axis=0).max() / 2 + 1e-3
     nodes = _nodes(places, middle - half, 2 * half, deepest, in_a_node)
     laszip = lazrs.LazVlr.new_for_compression(cloud.point_format.id, cloud.point_format.num_extra_bytes, True)
     plain = io.BytesIO()
     cloud.write(plain)
-    plain = plain.getvalue()
-    records = _records(plain) + [(b"laszip encoded", 22204, bytes(laszip.record_data()))]
-    points_at = HEADER + RECORD + 160 + sum(RECORD + len(data) for _, _, data in records)
+    records = b"".join(_record(record.user_id.encode(), record.record_id, record.record_data_bytes()) for record in cloud.header.vlrs)
+    records += _record(b"laszip encoded", 22204, bytes(laszip.record_data()))
+    header_size, info_size, long_record = 375, 214, 60   # bytes; the information of COPC with its own head
+    points_at = header_size + info_size + len(records)
     with open(path, "w+b") as file:
         file.write(bytes(points_at))
         compressor = lazrs.LasZipCompressor(file, laszip)
@@ -43,14 +41,14 @@ def write_copc(cloud, path: str | os.PathLike[str], deepest: int = 3, in_a_node:
             at += size
         file.seek(hierarchy_at)
         file.write(struct.pack("<H16sHQ32s", 0, b"copc", 1000, len(entries), b"hierarchy") + entries)
-        header = bytearray(plain[:HEADER])
-        struct.pack_into("<II", header, 96, points_at, len(records) + 1)
-        header[104] |= COMPRESSED
+        header = bytearray(plain.getvalue()[:header_size])
+        struct.pack_into("<II", header, 96, points_at, len(cloud.header.vlrs) + 2)
+        header[104] |= 0x80   # compressed
         struct.pack_into("<QI", header, 235, hierarchy_at, 1)
         times = np.asarray(cloud.gps_time)
-        info = struct.pack("<5dQQ2d88x", *middle, half, 2 * half / 128, hierarchy_at + LONG_RECORD, len(entries), times.min(), times.max())
+        info = struct.pack("<5dQQ2d88x", *middle, half, 2 * half / 128, hierarchy_at + long_record, len(entries), times.min(), times.max())
         file.seek(0)
-        file.write(header + b"".join(_record(*record) for record in [(b"copc", 1, info), *records]))
+        file.write(header + _record(b"copc", 1, info) + records)
     return str(path)
 
 
@@ -70,17 +68,6 @@ def _nodes(places, corner, edge, deepest, most):
         if not len(left):
             break
     return nodes
-
-
-def _records(las):
-    """(user, number, content) of the records in a LAS file's header."""
-    size, _, count = struct.unpack_from("<HII", las, 94)
-    records, at = [], size
-    for _ in range(count):
-        user, number, length = struct.unpack_from("<2x16sHH", las, at)
-        records.append((user, number, las[at + RECORD:at + RECORD + length]))
-        at += RECORD + length
-    return records
 
 
 def _record(user, number, content):
