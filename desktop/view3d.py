@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import laspy
 import numpy as np
 import shapely
 from qgis.core import (
@@ -35,6 +34,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtGui import QColor
 
 from ..core.common.errors import RoadExtractionError
+from ..core.lazy import laspy
 from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.texts import tr

@@ -33,10 +33,10 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMarginsF, QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QPageLayout, QPageSize, QPainter, QPdfWriter
 
+from ...algorithms.algorithm import MAP_LAYERS
 from ...algorithms.export import DRAWN, SheetSettings
-from ...algorithms.map_layers import MAP_LAYERS
 from ...algorithms.provenance import own_version
-from ...algorithms.survey_files import survey_name
+from ...algorithms.survey_input import survey_name
 from ...core.common.arrays import round_step
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
@@ -46,8 +46,22 @@ from ...processing_provider.results.road_maps import CLOUDS, origin_of, road_map
 from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .axes import MapLine, Sheet, accuracy_of, axes_of, lines_of, road_lines, sheets_along
-from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, LETTER, Drawing, add_legend, as_it_stands, classes_by_layer, legend_height, station_text, text_format, text_width
+from .drawing import (
+    COLOURS,
+    DARK,
+    GREY,
+    LETTER,
+    Drawing,
+    add_legend,
+    as_it_stands,
+    classes_by_layer,
+    legend_height,
+    profile_pages,
+    section_pages,
+    station_text,
+    text_format,
+    text_width,
+)
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}  # mm, ISO 216
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)

@@ -6,9 +6,9 @@ import io
 import os
 import struct
 
-import laspy
-import lazrs
 import numpy as np
+
+from ...core.lazy import laspy, lazrs
 
 
 def write_copc(cloud: laspy.LasData, path: str | os.PathLike[str], deepest: int = 3, in_a_node: int = 2000) -> str:

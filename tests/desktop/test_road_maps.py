@@ -5,8 +5,7 @@ from lanewright.algorithms.provenance import Provenance, provenance_now
 from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, ROAD_SURFACE
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.desktop.review.section import section_at
-from lanewright.processing_provider.results.layer_tree import place_layer
-from lanewright.processing_provider.results.road_maps import clouds_lie_in, clouds_of, road_map_of, road_maps, runs_of
+from lanewright.processing_provider.results.road_maps import clouds_lie_in, clouds_of, place_layer, road_map_of, road_maps, runs_of
 from lanewright.processing_provider.styling import embed_style
 from qgis.core import QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer
 from road_map_layers import CLOUDS, EAST, NORTH, added, run_at

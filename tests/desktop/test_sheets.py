@@ -15,7 +15,7 @@ from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, MARKI
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import OVERLAP, accuracy_of, axes_of, lines_of, road_line, road_lines, sheets_along
-from lanewright.desktop.layout.charts import profile_pages, section_pages
+from lanewright.desktop.layout.drawing import profile_pages, section_pages
 from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout, unused_name, write_pdf
 from lanewright.desktop.menu import credit_of, sheet_values, shown_layers
 from lanewright.processing_provider.results.attributes import explain_attributes

@@ -2,10 +2,9 @@
 
 import pytest
 from copc_files import write_vpc
-from lanewright.algorithms.survey_files import cloud_files
+from lanewright.algorithms.survey_input import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
-from lanewright.desktop.trajectory_widget import TrajectoryWrapper, trajectory_beside
+from lanewright.desktop.survey_widgets import PointCloudsWidget, PointCloudsWrapper, TrajectoryWrapper, described, dropped_clouds, trajectory_beside
 from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsVectorLayer
 from qgis.gui import QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtCore import QMimeData, QUrl
