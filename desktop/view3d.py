@@ -35,10 +35,10 @@ from qgis.PyQt.QtGui import QColor
 
 from ..core.common.errors import RoadExtractionError
 from ..core.lazy import laspy
+from ..core.survey.las.copc_writer import write_copc
 from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.texts import tr
-from ..products.cloud.copc import write_copc
 from .background import with_points
 
 STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"
@@ -49,7 +49,7 @@ UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 # colour, and m above the surface, or the two would flicker; of dashed lines the dashes are markings
 LOOKS = {"ROAD_SURFACE": ("#8d9299", 0.0), "MARKINGS": ("#ffffff", 0.02), "ROAD_EDGES": ("#26282b", 0.02), "DRIVING_LINES": ("#1554b0", 0.05)}
-AROUND, MOST, DEEPEST, IN_A_NODE = 80.0, 4_000_000, 5, 20_000   # m about the place from which points come, how many, and their octree
+AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
 TASKS: set[QgsTask] = set()   # that read points; QGIS keeps no reference
 DISTANCE, PITCH = 45.0, 60.0  # m from the place to the camera, and degrees from straight down
 
@@ -202,7 +202,9 @@ def _as_copc(points):
     cloud = laspy.LasData(header)
     cloud.x, cloud.y, cloud.z = points[:, :3].T
     cloud.intensity = points[:, 3].astype(np.uint16)
-    return write_copc(cloud, QgsProcessingUtils.generateTempFilename("points.copc.laz"), DEEPEST, IN_A_NODE)
+    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
+    write_copc(cloud, path)
+    return path
 
 
 def _intensities(path):
