@@ -253,32 +253,16 @@ class _DataMask:
 
     @gdal_exceptions()
     def __init__(self, path: str) -> None:
-        self._raster = open_raster(path)
-        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
+        raster = open_raster(path)
+        self._raster = gdal.Translate("", raster, format="VRT", bandList=[1])
+        self._raster.SetGeoTransform(place_of_raster(raster)[0] or NO_PLACE)
 
     @gdal_exceptions()
     def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
         """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `_PolygonRasteriser.burn`."""
-        size = (bounds[2] - bounds[0]) / shape[1]
-        x = bounds[0] + (np.arange(shape[1]) + 0.5) * size
-        y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
-        column = np.floor(self._inverse[0] + self._inverse[1] * x).astype(int)
-        row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
-        column_inside = (column >= 0) & (column < self._raster.RasterXSize)
-        row_inside = (row >= 0) & (row < self._raster.RasterYSize)
-        burnt = np.zeros(shape, bool)
-        if not column_inside.any() or not row_inside.any():
-            return burnt
-        column, row = column[column_inside], row[row_inside]
-        first, above = int(column.min()), int(row.min())
-        wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
-        band = self._raster.GetRasterBand(1)
-        data = np.frombuffer(band.ReadRaster(first, above, wide, high, buf_type=gdal.GDT_Float64), np.float64).reshape(high, wide)
-        filled = np.isfinite(data)
-        if band.GetNoDataValue() is not None:
-            filled &= data != band.GetNoDataValue()
-        burnt[np.ix_(row_inside, column_inside)] = filled[np.ix_(row - above, column - first)]
-        return burnt
+        burnt = gdal.Warp("", self._raster, format="MEM", outputBounds=bounds, width=shape[1], height=shape[0], resampleAlg="near",
+                          outputType=gdal.GDT_Float64, dstNodata="nan")
+        return np.isfinite(np.frombuffer(burnt.ReadRaster(), np.float64)).reshape(shape)
 
 
 def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:

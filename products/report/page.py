@@ -39,7 +39,8 @@ def templates() -> Any:
     environment.globals.update(tr=tr, told=told, word=word, language=language, number=number, collected=_Rows,
                                pick=lambda row, names: [row.get(name) for name in names.split()])
     environment.filters.update(shown=_shown, percent=percent, base64_png=_base64_png)
-    environment.tests.update(figure=_is_figure, figures=_are_figures)
+    environment.tests.update(figure=_is_figure, figures=lambda rows, column: bool(rows) and all(
+        row[column] is None or _is_figure(row[column]) for row in rows))
     parts = vars(environment.get_template("parts.html").module)
     environment.globals.update({name: macro for name, macro in parts.items() if not name.startswith("_")})
     return environment
@@ -71,10 +72,6 @@ class _Rows(list):
 
 def _is_figure(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _are_figures(rows: Sequence[Sequence[Any]], column: int) -> bool:
-    return bool(rows) and all(row[column] is None or _is_figure(row[column]) for row in rows)
 
 
 def _shown(value: Any, decimals: int | None = None) -> Any:

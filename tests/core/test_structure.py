@@ -36,10 +36,10 @@ NUMBERS = {
     "products/inventory": 147,
     "products/surface": 20,
     "products/cloud": 0,
-    "products/export": 153,
+    "products/export": 151,
     "products/client_fields": 0,
     "products/assess": 18,
-    "products/overlay": 78,
+    "products/overlay": 77,
     "products/report": 26,
     "simulator": 151,
 }

@@ -176,7 +176,7 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
         patches = _find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
-        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score)
+        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance)
         if fitted is None:
             return None
         placement = fitted[0]
@@ -227,7 +227,7 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
-        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance, patches.score[alike])
+        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance)
         if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
             return None
         pixel, line = placement.pixels(patches.x + patches.dx, patches.y + patches.dy)
