@@ -23,7 +23,7 @@ NUMBERS = {
     "core/countries": 5,
     "core/io": 5,
     "core/curves": 9,
-    "core/survey": 75,
+    "core/survey": 76,
     "core/road": 18,
     "core/intensity": 12,
     "core/markings": 61,
