@@ -8,9 +8,8 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
-from .algorithm import Algorithm, settings_of
+from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .call import existing_file
-from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with, road_points_of
 from .texts import languages, told, tr
 

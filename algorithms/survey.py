@@ -3,8 +3,7 @@
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
 from ..core.lazy import np
 from .algorithm import Algorithm, settings_of
-from .survey_files import trajectory_features
-from .survey_input import SURVEY_SETTINGS, imported_trajectory
+from .survey_input import SURVEY_SETTINGS, imported_trajectory, trajectory_features
 from .texts import tr
 
 

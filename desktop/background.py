@@ -95,7 +95,7 @@ class _TaskProgress(Progress):
 
 def _worked(task, clouds, place, radius, work):
     """What the background does: the result of the work, None where it is no longer wanted."""
-    from ..core.survey.las.near import points_near
+    from ..core.survey.las.parallel_reader import points_near
 
     progress = _TaskProgress(task)
     try:

@@ -6,7 +6,7 @@ import tempfile
 import traceback
 from pathlib import Path
 
-from lanewright.processing_provider.results.runs import last_report
+from lanewright.processing_provider.results.road_maps import last_report
 from lanewright.processing_provider.texts import tr
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt, QTimer

@@ -22,8 +22,7 @@ from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, read_files
-from .frame.passes import decimate_by_distance
-from .frame.road_frame import RoadFrame, build_frame
+from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
@@ -330,8 +329,8 @@ def _sampled(survey, read, progress):
 
 def _tell_scanners_apart(survey, read, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
+    from .estimation.adjustment import told_apart
     from .estimation.estimate import splitter_of
-    from .estimation.interleaved import told_apart
     from .estimation.samples import samples_of
 
     if not survey.has_time:

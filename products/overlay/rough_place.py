@@ -134,8 +134,6 @@ def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.n
 FULL_FRAME_DIAGONAL = 43.27  # mm, of the 24 x 36 mm that a focal length "in 35 mm film" refers to
 _STEEP = 45.0                # ° below the horizon from which a camera looks down rather than ahead
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:/\d+)?"
-# XMP names, with or without their prefix; DJI wrote the second spelling of longitude for years
-_LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLongtitude", "GPSLongitude")
 
 
 @dataclass(frozen=True)
@@ -172,47 +170,30 @@ def _text(value):
 
 def position_tags(exif: Mapping[str, str], xmp: str = "") -> _PositionTags | None:
     """The same from EXIF items, named as GDAL names them, and from the text of an XMP packet."""
-    latitude = _first(_xmp_degrees(xmp, _LATITUDE), _exif_degrees(exif, "Latitude"))
-    longitude = _first(_xmp_degrees(xmp, _LONGITUDE), _exif_degrees(exif, "Longitude"))
+    def tag(*names):
+        """The number of the first of these tags that has one; south and west are negative."""
+        for name in names:
+            text = exif.get(name) or _xmp_text(xmp, name)
+            value = _numbers(text)
+            if value is not None:
+                return -abs(value) if (text + exif.get(name + "Ref", "")).strip()[-1:].upper() in ("S", "W") else value
+        return None
+
+    # of XMP with or without their prefix; DJI wrote the second spelling of longitude for years
+    latitude = tag("GpsLatitude", "GPSLatitude", "EXIF_GPSLatitude")
+    longitude = tag("GpsLongitude", "GpsLongtitude", "GPSLongitude", "EXIF_GPSLongitude")
     # a receiver without a fix writes zeros
     if latitude is None or longitude is None or not abs(latitude) <= 90 or not abs(longitude) <= 180 or latitude == longitude == 0:
         return None
-    pitch = _xmp_number(xmp, "GimbalPitchDegree")
-    heading = _first(_xmp_number(xmp, "GimbalYawDegree") if pitch is None or pitch < -_STEEP else None,
-                     _xmp_number(xmp, "FlightYawDegree"), _numbers(exif.get("EXIF_GPSImgDirection", "")))
-    return _PositionTags(
-        latitude, longitude, heading, _xmp_number(xmp, "RelativeAltitude"),
-        _first(_numbers(exif.get("EXIF_FocalLengthIn35mmFilm", "")), _xmp_number(xmp, "FocalLengthIn35mmFilm")))
-
-
-def _first(*values):
-    return next((value for value in values if value is not None), None)
+    pitch = tag("GimbalPitchDegree")
+    heading = tag(*["GimbalYawDegree"] * (pitch is None or pitch < -_STEEP), "FlightYawDegree", "EXIF_GPSImgDirection")
+    return _PositionTags(latitude, longitude, heading, tag("RelativeAltitude"), tag("EXIF_FocalLengthIn35mmFilm", "FocalLengthIn35mmFilm"))
 
 
 def _xmp_text(xmp, name):
     """The text of an attribute or an element, "" where there is none."""
     match = re.search(rf"\b{name}\s*=\s*[\"']([^\"']*)[\"']|<(?:[\w-]+:)?{name}>([^<]*)<", xmp)
     return (match.group(1) or match.group(2) or "").strip() if match else ""
-
-
-def _xmp_number(xmp, name):
-    return _numbers(_xmp_text(xmp, name))
-
-
-def _xmp_degrees(xmp, names):
-    for name in names:
-        text = _xmp_text(xmp, name)
-        value = _numbers(text)
-        if value is not None:
-            return -abs(value) if text[-1:].upper() in ("S", "W") else value
-    return None
-
-
-def _exif_degrees(exif, name):
-    value = _numbers(exif.get(f"EXIF_GPS{name}", ""))
-    if value is None:
-        return None
-    return -value if exif.get(f"EXIF_GPS{name}Ref", "").strip().upper()[:1] in ("S", "W") else value
 
 
 def _numbers(text):

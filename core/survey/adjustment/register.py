@@ -20,7 +20,7 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...lazy import cv2, laspy
-from ..frame.passes import Pass
+from ..frame.road_frame import Pass
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, Points, to_units

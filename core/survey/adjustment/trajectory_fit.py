@@ -19,8 +19,7 @@ from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
-from ..trajectory.shape import shaped_trajectory
-from ..trajectory.trajectory import Trajectory, clean_trajectory
+from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
 
 

@@ -16,8 +16,7 @@ from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
-from .adjustment import Adjusted, Returns, grown_poses
-from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
+from .adjustment import Adjusted, Returns, ScannerSplitter, grown_poses, lines_of_each, scan_line_directions, steps_of, told_apart
 from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
 from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of, thinned
 from .turning_head import HeadTrack, head_heights, turning_heads

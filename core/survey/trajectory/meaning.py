@@ -14,11 +14,10 @@ from ...common.errors import RoadExtractionError
 from ...io.text_table import finite_or_nan, read_number_table
 from ...lazy import pyproj
 from ..weights import TRAJECTORY
-from .columns import ROLES, candidates_by_role, listed
+from .columns import ROLES, candidates_by_role, columns_from_numbers, listed, rough_metres
 from .table_columns import TableColumn, angle_of, first_row, is_record, titled_columns, with_week
 from .time_systems import UNIX_EPOCH, clock_times, counted_days, is_to_come, leap_seconds, time_system_by_size, unix_time_found
 from .trajectory import Trajectory
-from .unnamed_columns import columns_from_numbers, rough_metres
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # source: m (WGS 84: 6.357e6 to 6.378e6) from the centre of the earth to its surface, with mountains
 FROM_CENTRE = ("ecef_x", "ecef_y", "ecef_z")   # roles of earth-centred coordinates

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.shape import shaped_trajectory
-from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory
+from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 
 BENT = chain(ahead(80), bend(250, 60), ahead(60))
 
