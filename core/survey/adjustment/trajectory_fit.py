@@ -230,7 +230,8 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
             parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
-    return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order], numbers[order, SCANNER_FIELDS.index("point_source_id")])
+    source = numbers[order, SCANNER_FIELDS.index("point_source_id")]
+    return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order], source)
 
 
 def _read_place(reader, file, start, windows):

@@ -312,7 +312,7 @@ def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
 
 
 def _jump(trajectory: Trajectory) -> tuple[float, tuple[str, ...]]:
-    """m that a trajectory jumps to the side or up from one row to the next, at most, and the warning; 0 and none where a vehicle can have driven it."""
+    """m that a trajectory jumps to the side or up from one row to the next, at most, and the warning; 0 and none where vehicles can drive so."""
     worst = 0.0, 0
     for piece in _pieces(trajectory) if trajectory.has_time else ():
         time, place = trajectory.time[piece], np.stack([getattr(trajectory, name)[piece] for name in "xyz"], axis=1)
@@ -332,8 +332,9 @@ def _jump(trajectory: Trajectory) -> tuple[float, tuple[str, ...]]:
     if not worst[0]:
         return 0.0, ()
     k = worst[1]
-    return worst[0], (f"The trajectory jumps by {worst[0]:.2f} m at {trajectory.time[k]:.1f} s (near x {trajectory.x[k]:.0f}, y {trajectory.y[k]:.0f}), "
-                      "as no vehicle moves: two solutions seem to be joined there. Export all of the drive from one solution.",)
+    place = f"x {trajectory.x[k]:.0f}, y {trajectory.y[k]:.0f}"
+    return worst[0], (f"The trajectory jumps by {worst[0]:.2f} m at {trajectory.time[k]:.1f} s (near {place}), as no vehicle moves: two solutions seem "
+                      "to be joined there. Export all of the drive from one solution.",)
 
 
 def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
