@@ -545,8 +545,8 @@ class _Brightness:
         if abs(octaves) < READING.least_brightness_step:
             return ""
         dark, bright = (before, after) if octaves > 0 else (after, before)
-        return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {files[bright].path} than in {files[dark].path}, though one goes on from "
-                "the other. Paint may be missed in either: export both with one scale of intensities.")
+        return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {files[bright].path} than in {files[dark].path}, though one goes on "
+                "from the other. Paint may be missed in either: export both with one scale of intensities.")
 
     def _levels(self, rows):
         """{cell: octaves of the median brightness} of cells that have enough points."""

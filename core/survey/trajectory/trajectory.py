@@ -333,8 +333,8 @@ def _jump(trajectory: Trajectory) -> tuple[float, tuple[str, ...]]:
         return 0.0, ()
     k = worst[1]
     place = f"x {trajectory.x[k]:.0f}, y {trajectory.y[k]:.0f}"
-    return worst[0], (f"The trajectory jumps by {worst[0]:.2f} m at {trajectory.time[k]:.1f} s (near {place}), as no vehicle moves: two solutions seem "
-                      "to be joined there. Export all of the drive from one solution.",)
+    return worst[0], (f"The trajectory jumps by {worst[0]:.2f} m at {trajectory.time[k]:.1f} s (near {place}), as no vehicle moves: two solutions "
+                      "seem to be joined there. Export all of the drive from one solution.",)
 
 
 def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
