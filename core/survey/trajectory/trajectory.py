@@ -306,9 +306,9 @@ class _TrackShape:
 def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
     """A cleaned trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends."""
     smooth = _smoothed_track(trajectory)
-    jump, said = _jump(smooth.trajectory)
+    jump, warnings = _jump(smooth.trajectory)
     curved = _curved_track(smooth.trajectory)
-    return _TrackShape(curved.trajectory, float(np.linalg.norm([smooth.sigma, jump, curved.sigma])), smooth.said + said + curved.said)
+    return _TrackShape(curved.trajectory, float(np.linalg.norm([smooth.sigma, jump, curved.sigma])), smooth.said + warnings + curved.said)
 
 
 def _jump(trajectory: Trajectory) -> tuple[float, tuple[str, ...]]:
