@@ -336,7 +336,7 @@ def trajectory_of(project: QgsProject, active: QgsMapLayer | None = None) -> Qgs
 
 
 def trajectory_beside(clouds: list[str]) -> str:
-    """The one file in the folder of point clouds that holds a trajectory; "" where there is none, or more than one."""
+    """The file in the folder of point clouds that holds a trajectory, in whatever dresses; "" where there is none, or more than one."""
     try:
         folders = {Path(path).absolute().parent for path in cloud_files(clouds, CLOUDS)}
     except RoadExtractionError:
@@ -344,12 +344,12 @@ def trajectory_beside(clouds: list[str]) -> str:
     if len(folders) != 1 or not (folder := folders.pop()).is_dir():
         return ""
     tables = sorted(path for path in folder.iterdir() if path.is_file() and path.suffix.lower() in FILE_SUFFIXES)
-    usable = [str(path) for path in tables[:MOST_TABLES] if _is_a_trajectory(path)]
-    return usable[0] if len(usable) == 1 else ""
+    begins = {str(path): place for path in tables[:MOST_TABLES] if (place := _first_place(path))}
+    return next(iter(begins)) if len(set(begins.values())) == 1 else ""
 
 
-def _is_a_trajectory(path):
-    """Whether a file begins like one: to read all positions of a long drive would make the window wait."""
+def _first_place(path):
+    """Where a trajectory begins, to a metre; None of another file. To read all positions of a long drive would make the window wait."""
     from ..core.survey.trajectory.reader import read_trajectory
 
     try:
@@ -358,9 +358,10 @@ def _is_a_trajectory(path):
         with TemporaryDirectory() as folder:
             beginning = Path(folder) / path.name
             beginning.write_bytes(head[:head.rfind(b"\n") + 1] if len(head) == BEGINNING and b"\0" not in head else head)
-            return len(read_trajectory(str(beginning))) > 1
+            drive = read_trajectory(str(beginning))
+            return (round(drive.x[0]), round(drive.y[0])) if len(drive) > 1 else None
     except (RoadExtractionError, OSError, ValueError):
-        return False
+        return None
 
 
 def looks_like_a_trajectory(layer: QgsMapLayer) -> bool:

@@ -84,7 +84,7 @@ def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateRefe
     layer.setCustomProperty(OUTPUT, NAME)
     layer.setCustomProperty(SURVEY, survey)
     project.addMapLayer(layer, False)
-    project.layerTreeRoot().insertLayer(0, layer)
+    project.layerTreeRoot().insertLayer(0, layer).setExpanded(False)
     return layer
 
 

@@ -222,6 +222,14 @@ def test_the_trajectory_beside_the_point_clouds_is_offered_and_one_that_was_chos
     assert wrappers["TRAJECTORY"].parameterValue() == str(surveyed / "notes.txt")
 
 
+def test_a_trajectory_in_two_dresses_is_one_and_two_drives_are_none(surveyed, project):
+    clouds, rows = [str(surveyed / "s.laz")], (surveyed / "drive.csv").read_text().splitlines()
+    (surveyed / "export.txt").write_text("\n".join(row.replace(",", ";") for row in rows))
+    assert trajectory_beside(clouds) == str(surveyed / "drive.csv")
+    (surveyed / "back.txt").write_text("\n".join(rows[:1] + rows[:0:-1]))
+    assert trajectory_beside(clouds) == ""
+
+
 def test_points_extent_crs_and_time_of_the_clouds_are_said(surveyed):
     said = described([str(surveyed / "s.laz")])
     assert " points, " in said and " m, EPSG:32650" in said and ("scanned 20" in said or "times " in said), said
