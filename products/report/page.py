@@ -38,7 +38,8 @@ def templates() -> Any:
                               lstrip_blocks=True, keep_trailing_newline=True)
     environment.globals.update(tr=tr, told=told, word=word, language=language, number=number, collected=_Rows,
                                pick=lambda row, names: [row.get(name) for name in names.split()])
-    environment.filters.update(shown=_shown, percent=percent, base64_png=_base64_png)
+    environment.filters.update(shown=_shown, percent=percent, base64_png=lambda image: base64.b64encode(
+        cv2.imencode(".png", image)[1].tobytes()).decode("ascii"))   # of pictures (H, W, 3) uint8, blue, green, red
     environment.tests.update(figure=_is_figure, figures=lambda rows, column: bool(rows) and all(
         row[column] is None or _is_figure(row[column]) for row in rows))
     parts = vars(environment.get_template("parts.html").module)
@@ -60,6 +61,12 @@ def number(value: float) -> str:
     size = abs(value)
     digits = 0 if size >= 1000 else 1 if size >= 100 else 2 if size >= 1 else 3
     return f"{value:,.{digits}f}".replace(",", "\u202f")
+
+
+def round_down(value: float) -> float:
+    """1, 2 or 5 times a power of ten, the largest that is not above a value."""
+    ten = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * ten for step in (1, 2, 5) if step * ten <= value * (1 + 1e-9)))
 
 
 class _Rows(list):
@@ -86,11 +93,6 @@ def _shown(value: Any, decimals: int | None = None) -> Any:
 def percent(share: float) -> float | None:
     """A share as a percentage; None for NaN."""
     return None if share != share else 100.0 * share
-
-
-def _base64_png(image: np.ndarray) -> str:
-    """A picture (H, W, 3) uint8, blue, green, red, as the text of a PNG file."""
-    return base64.b64encode(cv2.imencode(".png", image)[1].tobytes()).decode("ascii")
 
 
 # Charts as SVG: bars, curves and levels over common axes.

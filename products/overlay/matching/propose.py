@@ -336,14 +336,15 @@ class _Rival(NamedTuple):
 
 def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """(N,) how well the photo fits about corners of paint, (N,) m, local: correlation of the best place within decimetres; NaN outside."""
-    maps = _maps(placement, paint, photo, x, y, _OFF)
+    maps = _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, _OFF)
     return np.array([np.nan if match is None else match.max() for match in maps])
 
 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all; None where no corner lies in the photo."""
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
-    maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
+    correlations = _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, _AROUND)
+    maps = [cv2.dilate(match, near) for match in correlations if match is not None]
     if not maps:
         return None
     votes = np.maximum(maps, 0.0)
@@ -365,11 +366,6 @@ def _rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, fl
     best_scores, other_scores = best[np.isfinite(best)], other[np.isfinite(other)]
     scale = len(other_scores) / max(len(best_scores), 1)
     return _Rival(*shift, float((other_scores < _UNLIKE).sum()), scale * float((best_scores < _UNLIKE).sum()))
-
-
-def _maps(placement, paint, photo, x, y, search):
-    """Correlations about each corner, (2 n + 1, 2 n + 1) each, its own place in the middle; None outside the photo."""
-    return _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, search)
 
 
 # Patches of the intensity image found again in the photo, once that lies roughly on the map.
