@@ -17,7 +17,7 @@ from ...core.io.crs import as_in_file, horizontal_part, parse_crs
 from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
-from .xml_tree import xml_text
+from .xml_tree import file_text
 
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -318,4 +318,4 @@ def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -
             tags |= dict(zip(("local_x", "local_y"), map("{:.4f}".format, draft.nodes[node, :2] - square)))
         nodes.append((id_of[node], *degrees.lonlat[node], tags))
     first = {"way": len(used) + 1, "relation": len(used) + 1 + len(draft.ways)}
-    return xml_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)
+    return file_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)
