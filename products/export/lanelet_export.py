@@ -311,11 +311,6 @@ def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -
     used = sorted(set().union(*(way.nodes for way in draft.ways)))
     id_of = {node: k for k, node in enumerate(used, start=1)}
     square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
-    nodes = []
-    for node in used:
-        tags = {"ele": f"{draft.nodes[node, 2]:.4f}"}
-        if local or degrees.local:
-            tags |= dict(zip(("local_x", "local_y"), map("{:.4f}".format, draft.nodes[node, :2] - square)))
-        nodes.append((id_of[node], *degrees.lonlat[node], tags))
+    nodes = np.c_[degrees.lonlat[used], draft.nodes[used] - np.append(square, 0.0)].tolist()
     first = {"way": len(used) + 1, "relation": len(used) + 1 + len(draft.ways)}
     return file_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)
