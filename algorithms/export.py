@@ -61,8 +61,7 @@ def map_layers(call, progress, lanelets):
 
 def write_map_layers(call, layers, progress):
     """Hand on the layers of a map; returns the numbers."""
-    for note in layers.notes:
-        progress.warn(note)
+    progress.warn_all(layers.notes)
     if call.wants("LANES"):
         call.layer("LANES", layers.lane_areas())
     for name in filter(call.wants, READ_LAYERS):
@@ -116,8 +115,7 @@ def lanes_with_borders(source):
 
 def warn_of_faults(notes, findings, progress):
     """Say what a map lacks, and what the check of its file found."""
-    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())):
-        progress.warn(text)
+    progress.warn_all((*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())))
 
 
 def fault_table(findings):
@@ -358,8 +356,7 @@ class ExportCad(Algorithm):
             raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
                 path=path, named=named, kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
-        for note in source.notes:
-            progress.warn(note)
+        progress.warn_all(source.notes)
         numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
         if call.wants("REPORT"):
             facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
@@ -518,8 +515,7 @@ class CheckMap(Algorithm):
         whole, crs, notes = read_map(call, progress.part(0.0, 0.4), lanelets)
         rest = progress.part(0.4, 0.95)
         check = check_lanelets(whole, *node_places(whole, crs), rest) if lanelets else check_opendrive(whole, crs, rest)
-        for note in notes:
-            progress.warn(note)
+        progress.warn_all(notes)
         call.layer("OUTPUT", check.to_features())
         if call.wants("REPORT"):
             call.text("REPORT", map_check_report(check, path, notes))

@@ -200,8 +200,7 @@ def estimated_trajectory(call, progress):
 
     progress.info(tr("No trajectory was given; it is estimated from the points …"))
     estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)
-    for note in estimate.notes:
-        progress.warn(note)
+    progress.warn_all(estimate.notes)
     progress.info(estimate.summary())
     return estimate
 

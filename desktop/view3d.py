@@ -46,6 +46,7 @@ SAMPLE = 50_000       # points by which the brightness of a cloud is set
 LINE_WIDTH = 2.0       # pixels of driving lines and edges without a curb
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
+POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 # colour, and m above the surface, or the two would flicker; of dashed lines the dashes are markings
 LOOKS = {"ROAD_SURFACE": ("#8d9299", 0.0), "MARKINGS": ("#ffffff", 0.02), "ROAD_EDGES": ("#26282b", 0.02), "DRIVING_LINES": ("#1554b0", 0.05)}
@@ -184,12 +185,15 @@ def _bring_points(road_map, place, canvas, project):
     def ready(task, path, problem):
         TASKS.discard(task)
         if path and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
-            settings = canvas.mapSettings()
-            settings.setLayers([_cloud(path, road_map, project), *settings.layers()])
+            project.removeMapLayers([layer.id() for layer in project.mapLayers().values() if layer.customProperty(POINTS)])
+            cloud, settings = _cloud(path, road_map, project), canvas.mapSettings()
+            cloud.setName(title)
+            cloud.setCustomProperty(POINTS, True)
+            settings.setLayers([cloud, *settings.layers()])
 
-    paths = clouds_of(road_map, project)[0]
+    paths, title = clouds_of(road_map, project)[0], tr("Points of the 3D view")
     if paths:
-        TASKS.add(with_points(tr("Points of the 3D view"), paths, place, AROUND, _as_copc, ready))
+        TASKS.add(with_points(title, paths, place, AROUND, _as_copc, ready))
 
 
 def _as_copc(points):

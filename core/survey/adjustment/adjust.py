@@ -109,7 +109,7 @@ def _report_offsets(road, offsets, corrections, progress):
         separations = _separations(offsets)
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
+        if any(np.percentile(v, 90) > REGISTER.most_drift or v.max() > REGISTER.max_offset for v in separations if len(v)):
             progress.warn(f"{message}, more than navigation drifts. Each was moved by its share, and nothing shows which is right. Process the files "
                           "of each drive by itself, or measure control points.")
         else:

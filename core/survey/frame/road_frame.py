@@ -6,11 +6,10 @@ pauses, turns back, crosses itself or returns to its own track.
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from math import hypot
+from math import dist
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -46,24 +45,10 @@ def _moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_ra
 
     The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
     """
-    count = len(x)
-    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
-    px, py = x.tolist(), y.tolist()
-    keep, last = [0], 0
-    while True:
-        # a position less than `step` along the track is also less than `step` away
-        row = bisect_left(driven, driven[last] + step, last + 1)
-        reach = 64
-        while row < count and hypot(px[row] - px[last], py[row] - py[last]) < step:
-            far = np.flatnonzero(np.hypot(x[row:row + reach] - x[last], y[row:row + reach] - y[last]) >= step)
-            if len(far):
-                row += int(far[0])
-                break
-            row, reach = row + reach, 2 * reach
-        if row >= count:
-            break
-        keep.append(row)
-        last = row
+    places, keep, count = list(zip(x.tolist(), y.tolist())), [0], len(x)
+    for row, place in enumerate(places):
+        if dist(place, places[keep[-1]]) >= step:
+            keep.append(row)
     if keep[-1] != count - 1:
         keep = keep[:-1] + [count - 1] if len(keep) > 1 else keep + [count - 1]
     return np.array(keep)

@@ -266,8 +266,12 @@ def _plane(sample, time, others):
     if not pairs:
         return None, None
     if pairs[0][2] != "metres":
-        return _longitude_first(pairs), None
-    return (_usual_order(sample, *on_map) if len(on_map) == 2 else pairs[0]), None
+        # the second must be the latitude; no pair is known where either may be
+        clear = [pair for pair in pairs if (pair[1], pair[0], pair[2]) not in pairs]
+        return (clear[0] if len(clear) == 1 else None), None
+    # x first, unless the values show that the first is the northing of a zone (easting 100 to 900 km)
+    northing_first = len(on_map) == 2 and _size(sample, on_map[0]) > 1e6 and 1e5 <= _size(sample, on_map[1]) < 9e5
+    return pairs[int(northing_first)], None
 
 
 def _size(sample, k):
@@ -315,17 +319,6 @@ def _geographic_pairs(sample, time, others):
             if unit:
                 pairs.append((a, b, unit))
     return pairs
-
-
-def _usual_order(sample, a, b):
-    """x first, unless the values show that the first is the northing of a zone (easting 100 to 900 km)."""
-    return (b, a, "metres") if _size(sample, a) > 1e6 and 1e5 <= _size(sample, b) < 9e5 else (a, b, "metres")
-
-
-def _longitude_first(pairs):
-    """The pair whose second column must be the latitude, None where either may be."""
-    clear = [pair for pair in pairs if (pair[1], pair[0], pair[2]) not in pairs]
-    return clear[0] if len(clear) == 1 else None
 
 
 def _height_column(sample, time, others, plane, heading):

@@ -43,7 +43,9 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     Geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others.
     """
     notes: list[str] = []
-    full = _filled_columns(columns)
+    # columns that may be a role by their names and hold something, the likeliest first
+    full = {role: [k for k in places if not columns[k].is_empty]
+            for role, places in candidates_by_role([column.title for column in columns]).items()}
     _prefer_geodetic(columns, full, label, notes)
     column_of = {role: places[0] for role, places in full.items() if places and role not in given}
     if "minute" in column_of:
@@ -55,12 +57,6 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     if "z" in column_of:
         notes += _note_on_heights([columns[k].title for k in full["z"]], label)
     return _Meaning(column_of, tuple(notes))
-
-
-def _filled_columns(columns):
-    """{role: columns that may be it by their names and hold something, the likeliest first}."""
-    named = candidates_by_role([column.title for column in columns])
-    return {role: [k for k in places if not columns[k].is_empty] for role, places in named.items()}
 
 
 def _time_columns(columns, candidates, used):

@@ -306,8 +306,35 @@ class _TrackShape:
 def shaped_trajectory(trajectory: Trajectory) -> _TrackShape:
     """A cleaned trajectory without noise that no vehicle can have caused, and with curves where its vertices are too far apart for its bends."""
     smooth = _smoothed_track(trajectory)
+    jump, warnings = _jump(smooth.trajectory)
     curved = _curved_track(smooth.trajectory)
-    return _TrackShape(curved.trajectory, float(np.hypot(smooth.sigma, curved.sigma)), smooth.said + curved.said)
+    return _TrackShape(curved.trajectory, float(np.linalg.norm([smooth.sigma, jump, curved.sigma])), smooth.said + warnings + curved.said)
+
+
+def _jump(trajectory: Trajectory) -> tuple[float, tuple[str, ...]]:
+    """m that a trajectory jumps to the side or up from one row to the next, at most, and the warning; 0 and none where vehicles can drive so."""
+    worst = 0.0, 0
+    for piece in _pieces(trajectory) if trajectory.has_time else ():
+        time, place = trajectory.time[piece], np.stack([getattr(trajectory, name)[piece] for name in "xyz"], axis=1)
+        if len(time) < 4 * MIN_CUBIC_ROWS:
+            continue
+        step = np.diff(time)
+        speed = np.diff(place, axis=0) / step[:, None]
+        usual = (speed[2:] + speed[:-2]) / 2
+        way = usual / np.maximum(np.linalg.norm(usual, axis=1), 1e-9)[:, None]
+        off = speed[1:-1] - usual
+        off -= (off * way).sum(axis=1)[:, None] * way   # along it times may be rounded
+        metres = np.linalg.norm(off, axis=1) * step[1:-1]
+        k = int(np.argmax(metres))
+        noise = _noise(trajectory, piece) if _even(time) else 0.0
+        if metres[k] > max(worst[0], TRAJECTORY.least_jump, TRAJECTORY.jump_noise * noise, TRAJECTORY.jump_acceleration * step[k + 1] ** 2):
+            worst = float(metres[k]), piece.start + k + 1
+    if not worst[0]:
+        return 0.0, ()
+    k = worst[1]
+    place = f"x {trajectory.x[k]:.0f}, y {trajectory.y[k]:.0f}"
+    return worst[0], (f"The trajectory jumps by {worst[0]:.2f} m at {trajectory.time[k]:.1f} s (near {place}), as no vehicle moves: two solutions "
+                      "seem to be joined there. Export all of the drive from one solution.",)
 
 
 def _smoothed_track(trajectory: Trajectory) -> _TrackShape:
