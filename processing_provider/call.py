@@ -27,8 +27,7 @@ from ..core.common.progress import Progress, RemainingTime
 from ..core.io.local_files import check_local, gdal_exceptions
 from ..core.lazy import gdal
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
-from .results.layer_tree import NAMES_ONLY
-from .results.runs import run_of
+from .results.road_maps import NAMES_ONLY, run_of
 from .styling import embed_style, style_on_load
 from .texts import told, tr
 

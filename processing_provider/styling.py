@@ -36,9 +36,7 @@ from qgis.PyQt.QtXml import QDomDocument
 from ..algorithms.destinations import destination_path
 from ..core.common.features import COLOUR
 from .results.attributes import STYLES, WORDS, explain_attributes
-from .results.layer_tree import place_layer
-from .results.road_maps import describe_origin
-from .results.runs import GROUP
+from .results.road_maps import GROUP, describe_origin, place_layer
 from .texts import tr
 
 # Output name -> (style, place in the group: small is drawn below)

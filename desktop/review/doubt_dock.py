@@ -269,7 +269,8 @@ class DoubtDock(QDockWidget):
         """Look up what was decided, of all places at once: the corrections are many, and so are the pieces."""
         pieces = [piece for place in self.places for piece in place.pieces]
         made = corrections_of(self.layer, pieces, self.places[0].crs) if pieces else {}
-        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in self._seen()}
+        seen = self._seen() if pieces else []
+        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in seen}
         self.decided |= {id(pieces[number]): str(WORDS["action"].get(row["action"], row["action"])) for number, row in made.items()}
 
     def _decision(self, piece):

@@ -6,7 +6,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.survey_files import read_trajectory_source
+from lanewright.algorithms.survey_input import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features, vertices_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.features import CURVE_ELEMENTS, ROAD_EDGES, Features

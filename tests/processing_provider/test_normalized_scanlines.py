@@ -3,7 +3,7 @@
 import laspy
 import numpy as np
 import pytest
-from lanewright.algorithms.survey_files import read_trajectory_source
+from lanewright.algorithms.survey_input import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features
 from lanewright.core.common.features import SCANLINES
 from lanewright.core.survey.frame.road_frame import build_frame

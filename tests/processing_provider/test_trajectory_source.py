@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.algorithms.survey_files import read_trajectory_source, trajectory_features, trajectory_path
+from lanewright.algorithms.survey_input import read_trajectory_source, trajectory_features, trajectory_path
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.layers import QgisSource
 from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
