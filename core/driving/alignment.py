@@ -80,8 +80,9 @@ def fitted_lanes(roads: Sequence[LanesOfRoad]) -> Work:
             cuts = [(*map(float, np.interp([first, last], axis.u, axis.at)), curve) for first, last, curve in divided.get(id(axis), ())]
             for i, offset in members:
                 of_lane[i] = _of_lane(lanes.tracks[i], offset, cuts, lanes.s, lanes.road)
-    of_places = iter(places)
-    return [(_courses([(next(courses), *next(of_places)) for _ in lanes.tracks], lanes.road, of_lane), of_lane) for lanes, of_lane in zip(roads, elements)]
+    fitted = zip(courses, places)
+    return [(_courses([(fit, *place) for _, (fit, place) in zip(lanes.tracks, fitted)], lanes.road, of_lane), of_lane)
+            for lanes, of_lane in zip(roads, elements)]
 
 
 def curves_of_lanes(source: NoSource, lines: Sequence[tuple[np.ndarray, np.ndarray, str]]) -> list[CurveFit | list[tuple[float, float, str]]]:

@@ -200,9 +200,10 @@ def _where_driven(part, s, estimate, span, lane_width, lined):
     """The LaneTrack of a lane of a strip between two borders, `lined` if both are painted, moved from its share of it to where it was driven.
 
     Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
-    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or, unless both its borders are painted, are
-    as unlike as lanes of a road are, both as probable. Of two lanes the other one lies alike. Vehicles keep to the middle with some scatter; beside a
-    line they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive is surer.
+    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or, unless both its borders are painted,
+    are as unlike as lanes of a road are, both as probable. Of two lanes the other one lies alike. Vehicles keep to the middle with some scatter;
+    beside a line they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive
+    is surer.
     """
     evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero(np.isfinite(evidence.driven[:, span.interval]))

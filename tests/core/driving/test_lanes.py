@@ -377,7 +377,8 @@ def test_two_lanes_that_keep_to_their_lines_with_bare_asphalt_between_them_lie_t
 
 def test_a_lane_goes_on_behind_where_its_road_crosses_itself():
     """A ramp leads around three quarters of a circle and over the road that it comes from."""
-    heading = np.cumsum(np.concatenate([np.full(int(length / 0.05), 0.05 * bend) for bend, length in ((0.0, 80.0), (1 / 25, 37.5 * np.pi), (0.0, 80.0))]))
+    bends = (0.0, 80.0), (1 / 25, 37.5 * np.pi), (0.0, 80.0)
+    heading = np.cumsum(np.concatenate([np.full(int(length / 0.05), 0.05 * bend) for bend, length in bends]))
     x, y = 0.05 * np.cumsum(np.cos(heading))[::10], 0.05 * np.cumsum(np.sin(heading))[::10]
     road = Road(0, *reference_nodes(np.c_[x, y]), 0.0)
     s = np.arange(20.0, 270.0, 0.5)
