@@ -271,7 +271,7 @@ def _plane(sample, time, others):
         return (clear[0] if len(clear) == 1 else None), None
     # x first, unless the values show that the first is the northing of a zone (easting 100 to 900 km)
     northing_first = len(on_map) == 2 and _size(sample, on_map[0]) > 1e6 and 1e5 <= _size(sample, on_map[1]) < 9e5
-    return pairs[northing_first], None
+    return pairs[int(northing_first)], None
 
 
 def _size(sample, k):
