@@ -293,7 +293,7 @@ def layers_below(project: QgsProject, maps: list[RoadMap]) -> list[QgsMapLayer]:
     inside = {layer.id() for road_map in maps for layer in shown_layers(road_map, project, hidden=True)}
     nodes = project.layerTreeRoot().findLayers()
     return [node.layer() for node in nodes if node.layer() and node.layer().id() not in inside and node.layer().isSpatial()
-            and node.layer().type() != Qgis.LayerType.Vector]
+            and node.layer().type() not in (Qgis.LayerType.Vector, Qgis.LayerType.PointCloud)]
 
 
 def credit_of(layer: QgsMapLayer) -> str:

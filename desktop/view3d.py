@@ -35,10 +35,10 @@ from qgis.PyQt.QtGui import QColor
 
 from ..core.common.errors import RoadExtractionError
 from ..core.lazy import laspy
+from ..core.survey.las.copc_writer import write_copc
 from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.texts import tr
-from ..products.cloud.copc import write_copc
 from .background import with_points
 
 STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"
@@ -46,10 +46,11 @@ SAMPLE = 50_000       # points by which the brightness of a cloud is set
 LINE_WIDTH = 2.0       # pixels of driving lines and edges without a curb
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
+POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 # colour, and m above the surface, or the two would flicker; of dashed lines the dashes are markings
 LOOKS = {"ROAD_SURFACE": ("#8d9299", 0.0), "MARKINGS": ("#ffffff", 0.02), "ROAD_EDGES": ("#26282b", 0.02), "DRIVING_LINES": ("#1554b0", 0.05)}
-AROUND, MOST, DEEPEST, IN_A_NODE = 80.0, 4_000_000, 5, 20_000   # m about the place from which points come, how many, and their octree
+AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
 TASKS: set[QgsTask] = set()   # that read points; QGIS keeps no reference
 DISTANCE, PITCH = 45.0, 60.0  # m from the place to the camera, and degrees from straight down
 
@@ -184,12 +185,15 @@ def _bring_points(road_map, place, canvas, project):
     def ready(task, path, problem):
         TASKS.discard(task)
         if path and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
-            settings = canvas.mapSettings()
-            settings.setLayers([_cloud(path, road_map, project), *settings.layers()])
+            project.removeMapLayers([layer.id() for layer in project.mapLayers().values() if layer.customProperty(POINTS)])
+            cloud, settings = _cloud(path, road_map, project), canvas.mapSettings()
+            cloud.setName(title)
+            cloud.setCustomProperty(POINTS, True)
+            settings.setLayers([cloud, *settings.layers()])
 
-    paths = clouds_of(road_map, project)[0]
+    paths, title = clouds_of(road_map, project)[0], tr("Points of the 3D view")
     if paths:
-        TASKS.add(with_points(tr("Points of the 3D view"), paths, place, AROUND, _as_copc, ready))
+        TASKS.add(with_points(title, paths, place, AROUND, _as_copc, ready))
 
 
 def _as_copc(points):
@@ -202,7 +206,9 @@ def _as_copc(points):
     cloud = laspy.LasData(header)
     cloud.x, cloud.y, cloud.z = points[:, :3].T
     cloud.intensity = points[:, 3].astype(np.uint16)
-    return write_copc(cloud, QgsProcessingUtils.generateTempFilename("points.copc.laz"), DEEPEST, IN_A_NODE)
+    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
+    write_copc(cloud, path)
+    return path
 
 
 def _intensities(path):

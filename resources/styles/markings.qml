@@ -39,9 +39,9 @@
         <Option type="QString" name="offset" value="0,0"/>
         <Option type="QString" name="offset_map_unit_scale" value="3x:0,0,0,0,0,0"/>
         <Option type="QString" name="offset_unit" value="MM"/>
-        <Option type="QString" name="outline_color" value="200,204,208,255,rgb:0.78431372549019607,0.80000000000000004,0.81568627450980391,1"/>
+        <Option type="QString" name="outline_color" value="141,146,153,255,rgb:0.55294117647058827,0.5725490196078431,0.59999999999999998,1"/>
         <Option type="QString" name="outline_style" value="solid"/>
-        <Option type="QString" name="outline_width" value="0.04"/>
+        <Option type="QString" name="outline_width" value="0.06"/>
         <Option type="QString" name="outline_width_unit" value="MM"/>
         <Option type="QString" name="style" value="solid"/>
        </Option>
