@@ -25,7 +25,7 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
 from .store.section_store import PartitionedPoints, SectionStore, StoreIndex
 from .trajectory.time_systems import unwrap_week
-from .weights import FRAME, READING
+from .weights import FRAME, READING, VEHICLE
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 
@@ -140,6 +140,8 @@ class _BlockReader:
             if sum(map(len, samples)) > READING.height_samples or looked_at > READING.max_waiting_points:
                 break
         drops = np.concatenate([np.empty(0, np.int32), *samples])
+        under = drops[drops > round(VEHICLE.lowest_sensor / COORDINATE_SCALE)]   # in a tunnel as much lies above
+        drops = under if len(under) > READING.least_road_share * len(drops) else drops
         return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
     def read(self, block: Any, summary: _BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
@@ -410,9 +412,12 @@ def sensor_height_of(drops: np.ndarray) -> float | None:
 
 
 def _road_height(counts, origin):
-    """The median about the fullest decimetre of a histogram per millimetre; None for too few points."""
+    """The median about the fullest decimetre of a histogram per millimetre, of those under a scanner if many are; None for too few points."""
     if counts.sum() <= READING.min_track_points:
         return None
+    under = np.arange(len(counts)) * READING.height_resolution + origin > VEHICLE.lowest_sensor
+    if counts[under].sum() > READING.least_road_share * counts.sum():   # the ceiling of a tunnel is nearer than the road
+        counts = np.where(under, counts, 0)
     bins = counts.reshape(-1, int(round(READING.height_peak_bin / READING.height_resolution))).sum(axis=1)
     # neighbouring bins count too: the road may lie on the border of two bins
     peak = int(np.argmax(np.convolve(bins, np.ones(3), "same")))

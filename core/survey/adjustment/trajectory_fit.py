@@ -20,7 +20,7 @@ from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
-from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
+from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, READING, TRACK, VEHICLE
 
 
 @dataclass(frozen=True)
@@ -313,7 +313,9 @@ def _mounting_of(number, time, place):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
     rays = place - lever[window]
-    below = rays[(np.hypot(*rays.T[:2]) < TRACK.usual_height) & good[window], 2]
+    near = rays[(np.hypot(*rays.T[:2]) < TRACK.usual_height) & good[window], 2]
+    under = near[near < -VEHICLE.lowest_sensor]
+    below = under if len(under) > READING.least_road_share * len(near) else near   # in a tunnel as much lies above
     return _Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 
