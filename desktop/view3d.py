@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import shapely
+from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer   # also, without it QGIS ends where it gives out a 3D view
 from qgis.core import (
     QgsColorRampShader,
     QgsCoordinateReferenceSystem,
@@ -138,8 +139,6 @@ def _as_copc(points):
 
 def _cloud(path, weak, strong, title, crs):
     """A layer of points, the brighter the stronger their echo; the map shows nothing of it."""
-    from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer
-
     options = QgsPointCloudLayer.LayerOptions()
     options.skipStatisticsCalculation = True
     cloud = QgsPointCloudLayer(path, title, "copc", options)
