@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import shapely
-from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer   # also, without it QGIS ends where it gives out a 3D view
+from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer  # also, without it QGIS ends where it gives out a 3D view
 from qgis.core import (
     QgsColorRampShader,
     QgsCoordinateReferenceSystem,
