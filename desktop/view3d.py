@@ -32,10 +32,10 @@ from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
 from ..core.lazy import laspy
+from ..core.survey.las.copc_writer import write_copc
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.styling import LOOKS, STYLES
 from ..processing_provider.texts import tr
-from ..products.cloud.copc import write_copc
 from .background import with_points
 
 DARK, BRIGHT = "#3c4045", "#ffffff"
@@ -44,7 +44,7 @@ UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
 POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 SHOWN = ("ROAD_SURFACE", "MARKINGS", "ROAD_EDGES", "DRIVING_LINES")   # results; of dashed lines the dashes are markings
-AROUND, MOST, DEEPEST, IN_A_NODE = 80.0, 4_000_000, 5, 20_000   # m about the place from which points come, how many, and their octree
+AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
 TASKS: set[QgsTask] = set()   # that read points; QGIS keeps no reference
 DISTANCE, PITCH = 45.0, 60.0  # m from the place to the camera, and degrees from straight down
 
@@ -133,7 +133,8 @@ def _as_copc(points):
     cloud = laspy.LasData(header)
     cloud.x, cloud.y, cloud.z = points[:, :3].T
     cloud.intensity = points[:, 3].astype(np.uint16)
-    path = write_copc(cloud, QgsProcessingUtils.generateTempFilename("points.copc.laz"), DEEPEST, IN_A_NODE)
+    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
+    write_copc(cloud, path)
     return path, *np.percentile(points[:, 3], (2, 98)).tolist()
 
 
