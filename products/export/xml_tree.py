@@ -92,22 +92,27 @@ def written(value: Any) -> str:
     return str(value)
 
 
-def xml_text(template: str, **values: Any) -> str:
-    """The whole file as text, by a template and what it is filled with."""
+def file_text(template: str, **values: Any) -> str:
+    """A whole file as text, by a template and what it is filled with, which in XML is written as that has it."""
     return str(_templates().get_template(template).render(values))
 
 
 @lru_cache(maxsize=1)
 def _templates():
-    """The jinja2.Environment of the files: what is put in is written as XML has it; `attributes` of an element are left out where they are None."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only when a file is written: QGIS starts no slower
+    """The jinja2.Environment of the files; `attributes` of an element of XML are left out where they are None."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_eval_context  # only when a file is written: QGIS starts no slower
     from markupsafe import Markup
 
     def escaped(value, quote=True):
         return value if isinstance(value, Markup) else Markup(escape(written(value), quote))   # nosec B704: it is escaped
 
-    environment = Environment(loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=True, undefined=StrictUndefined,
-                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, finalize=escaped)
+    @pass_eval_context
+    def put_in(context, value):
+        return escaped(value) if context.autoescape else value
+
+    environment = Environment(  # nosec B701: XML is escaped
+        loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=lambda name: name.endswith(".xml"), undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, finalize=put_in)
     environment.filters["text"] = lambda value: escaped(value, quote=False)
     environment.globals.update(zip=zip, attributes=lambda **values: Markup("").join(
         Markup(' {}="{}"').format(name, escaped(value)) for name, value in values.items() if value is not None))

@@ -232,20 +232,15 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
 def _photo(dataset, bands, image, place, factor, per_cell, side):
     """A part of the image, turned as the map is; `factor`: pixels per metre, as a complex number."""
     reach = int(np.ceil(0.75 * side * per_cell * abs(factor))) + 2
-    column, row = int(place[0]) - reach, int(place[1]) - reach
-    c0, c1 = max(0, column), min(image.width, column + 2 * reach)
-    r0, r1 = max(0, row), min(image.height, row + 2 * reach)
+    (c0, c1), (r0, r1) = ((max(0, int(at) - reach), min(size, int(at) + reach)) for at, size in zip(place, (image.width, image.height)))
     if c0 >= c1 or r0 >= r1:
         return np.zeros((side, side, 3), np.uint8)
-
-    window = np.zeros((2 * reach, 2 * reach, 3), np.float32)
-    for number, band in enumerate(bands):
-        data = np.frombuffer(dataset.GetRasterBand(band).ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=gdal.GDT_Float32), np.float32)
-        window[r0 - row:r1 - row, c0 - column:c1 - column, number] = data.reshape(r1 - r0, c1 - c0)
+    window = np.stack([np.frombuffer(dataset.GetRasterBand(band).ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=gdal.GDT_Float32), np.float32).reshape(
+        r1 - r0, c1 - c0) for band in bands], axis=2)
     # from pixels of the cut-out, right and down, to those of the window
     a, b = factor.real * per_cell, factor.imag * per_cell
     matrix = np.array([[a, b, 0.0], [-b, a, 0.0]])
-    matrix[:, 2] = np.array([place[0] - column - 0.5, place[1] - row - 0.5]) - matrix[:, :2] @ [side / 2 - 0.5, side / 2 - 0.5]
+    matrix[:, 2] = np.array([place[0] - c0 - 0.5, place[1] - r0 - 0.5]) - matrix[:, :2] @ [side / 2 - 0.5, side / 2 - 0.5]
     shrink = per_cell * abs(factor)
     smooth = cv2.GaussianBlur(window, (0, 0), 0.4 * shrink) if shrink > 1.5 else window
     cut = cv2.warpAffine(smooth, matrix, (side, side), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)

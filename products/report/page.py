@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -113,8 +112,7 @@ class Chart:
         self.height = height
         self.x0, self.x1 = _nonzero_range(x_range)
         self.y0, self.y1 = _nonzero_range(y_range)
-        self.parts: list[str] = []
-        self.levels: list[float] = []
+        self.parts: list[tuple[Any, ...]] = []   # (bar, curve or level; where, px; colour; text; width, px)
         self.labels = x_label, y_label
 
     def _x(self, x):
@@ -134,8 +132,7 @@ class Chart:
         for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):
             if np.isfinite(high) and high != low:
                 top, foot = sorted((float(self._y(high)), float(self._y(low))))
-                self.parts.append(f'<rect x="{a:.1f}" y="{top:.1f}" width="{max(b - a - 0.6, 0.6):.1f}" height="{foot - top:.1f}" '
-                                  f'fill="{colour}">{_title(title)}</rect>')
+                self.parts.append(("bar", (a, top, max(b - a - 0.6, 0.6), foot - top), colour, title, 0))
         return np.nan_to_num(values) + base
 
     def curve(self, x: np.ndarray, y: np.ndarray, colour: str, title: str = "", width: float = 1.6) -> None:
@@ -144,18 +141,13 @@ class Chart:
         rows = np.flatnonzero(finite)
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             if len(run):
-                points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
-                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
-                                  f'clip-path="url(#plot{self.height})">{_title(title)}</polyline>')
+                self.parts.append(("curve", list(zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run]))), colour, title, width))
 
     def level(self, y: float, colour: str, label: str = "") -> None:
         """Draw a dashed line across the plot, with its label unless that would lie over another one."""
         pixel = float(self._y(y))
-        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
-        if label and all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for drawn in self.levels):
-            self.levels.append(pixel)
-            self.parts.append(f'<text x="{PLOT_END - 4}" y="{pixel - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
-                              f'{html.escape(label)}</text>')
+        free = all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for kind, drawn, _, text, _ in self.parts if kind == "level" and text)
+        self.parts.append(("level", pixel, colour, label if free else "", 0))
 
     def svg(self) -> str:
         """The chart as an SVG element."""
@@ -174,10 +166,6 @@ def ticks(low: float, high: float, count: int) -> np.ndarray:
 def _nonzero_range(pair):
     low, high = float(pair[0]), float(pair[1])
     return (low, high) if high > low else (low - 0.5, low + 0.5)
-
-
-def _title(text):
-    return f"<title>{html.escape(text)}</title>" if text else ""
 
 
 # A small map as a picture: a grey raster with lines and polygons over it.

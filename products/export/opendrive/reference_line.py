@@ -393,14 +393,14 @@ def polynomial_reference(points: np.ndarray) -> PlanView:
 
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
     curve, elements, s = CubicSpline(along, points), [], 0.0
-    for k, span in enumerate(np.diff(along)):
+    for k, (span, (x, y)) in enumerate(zip(np.diff(along), points.tolist())):
         coefficients = curve.c[-2::-1, k]   # of the first to the third power, each of x and y
         heading = float(np.arctan2(*coefficients[0, ::-1]))
         c, d = np.cos(heading), np.sin(heading)
         u = np.linspace(0.0, span, 17)
         length = float(trapezoid(np.hypot(*curve(along[k] + u, 1).T), u))
         along_u, across_v = (coefficients @ np.array([[c, -d], [d, c]]) * (span / length) ** np.arange(1, 4)[:, None]).T.tolist()
-        elements.append(PlanElement(s, *map(float, points[k]), heading, length, "paramPoly3", (0.0, *along_u, 0.0, *across_v)))
+        elements.append(PlanElement(s, x, y, heading, length, "paramPoly3", (0.0, *along_u, 0.0, *across_v)))
         s += length
     return PlanView(tuple(elements))
 

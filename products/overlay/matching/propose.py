@@ -183,7 +183,7 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
     return placement
 
 
-def _on_same_cells(placement, paint, photo, cell):
+def _on_same_cells(placement: Placement, paint: SurveyedPaint, photo: Photo, cell: float) -> tuple[np.ndarray, np.ndarray, float]:
     """The contrast of the intensity image and that of the photo on cells of about that size (m), and the size that they have."""
     factor = max(1, round(cell / paint.cell))
     small = reduced(paint.contrast, factor)
