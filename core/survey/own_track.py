@@ -86,8 +86,8 @@ def _rails(seen, survey):
         for (first, end), (then, last) in zip(runs[:-1], runs[1:]):
             gauge = (then + last - first - end) / 2 * READING.rail_cell
             if max(end - first, last - then) * READING.rail_cell < READING.widest_rail and READING.gauges[0] < gauge < READING.gauges[1]:
-                return (f"The vehicle drove on rails, {gauge:.2f} m apart: this is a railway and no road. Edges, markings and lanes that are found here "
-                        "are not those of a road.", float(gauge))
+                return (f"The vehicle drove on rails, {gauge:.2f} m apart: this is a railway and no road. Edges, markings and lanes that are found "
+                        "here are not those of a road.", float(gauge))
     return "", 0.0
 
 
@@ -97,5 +97,5 @@ def _dark_scanner(seen, survey):
     if all(alike.values()) or not any(alike.values()):
         return "", 0.0
     dark = [one + 1 for one, same in alike.items() if same]
-    return (f"Scanner {dark[0]} of {len(survey.scanners)} gives one intensity to all points, which hides paint that the others see. Export it with its "
-            "intensities, or leave its points out.", 0.0)
+    return (f"Scanner {dark[0]} of {len(survey.scanners)} gives one intensity to all points, which hides paint that the others see. Export it with "
+            "its intensities, or leave its points out.", 0.0)

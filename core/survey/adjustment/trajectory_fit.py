@@ -49,7 +49,7 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
-    if not mountings and len(np.unique(sample.source)) <= LAS.max_scanners:   # places of one scanner at a time do not show that there are several
+    if not mountings:   # places of one scanner at a time do not show that there are several
         sample = replace(sample, scanner=sample.source)
         mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
@@ -206,7 +206,7 @@ class _Mounting:
 
 @dataclass(frozen=True)
 class _Sample:
-    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner and value of point_source_id."""
+    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner and point_source_id, if few."""
 
     time: np.ndarray
     place: np.ndarray
@@ -231,6 +231,7 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
     source = numbers[order, SCANNER_FIELDS.index("point_source_id")]
+    source = source if len(np.unique(source)) <= LAS.max_scanners else np.zeros(len(source), np.uint8)
     return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order], source)
 
 
