@@ -626,6 +626,7 @@ class ClassifyCloud(Algorithm):
             self.add_map_layer(name, optional=True)
         self.add_settings(CLOUD_SETTINGS, advanced=True)
         self.add_settings(READING_SETTINGS)
+        self.add_input("flag", "COPC", default=False, advanced=True)
         self.add_output("folder", "OUTPUT")
         self.add_output("folder", "UNROLLED", optional=True, by_default=False)
 
@@ -637,7 +638,7 @@ class ClassifyCloud(Algorithm):
         from ..products.cloud.rewrite import classified_copy
 
         files = read_headers(call.point_clouds(), given=call.crs())
-        copies = _copies(call, files, progress)
+        copies = _copies(call, files)
         # what was drawn by hand has no station
         layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
                                              if field.name in read.split()], MAP_LAYERS[name].geometry)
@@ -659,14 +660,15 @@ class ClassifyCloud(Algorithm):
                 "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
 
 
-def _copies(call, files, progress):
+def _copies(call, files):
     """(path, path of the unrolled copy) for each of the files, whose names must differ."""
-    names = [Path(file.path).name for file in files]
-    plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
-    twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)
+    from ..core.survey.road_points_las import is_copc
+
+    names = [Path(file.path) for file in files]
+    names = [f"{path.stem}.copc.laz" if call.value("COPC") and not is_copc(path) and file.point_format not in (4, 5, 9, 10)   # not with waveforms
+             else path.name for file, path in zip(files, names)]
+    twice = next((name for k, name in enumerate(names) if name.lower() in {other.lower() for other in names[:k]}), None)
     if twice:
         raise RoadExtractionError(
             tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
-    if plain != names:
-        progress.info(tr("COPC files are written as LAZ: their octree is not kept. QGIS makes a COPC of a LAZ by Create COPC."))
-    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in plain]
+    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in names]

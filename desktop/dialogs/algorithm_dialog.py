@@ -407,8 +407,6 @@ def _connection(name):
     return QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(name)
 
 
-# Where the results of an algorithm go when they all go to one place.
-
 def outputs_by_default(algorithm: QgsProcessingAlgorithm) -> list[QgsProcessingParameterDefinition]:
     """The results that are made unless one is left out."""
     return [definition for definition in algorithm.destinationParameterDefinitions() if definition.createByDefault()]

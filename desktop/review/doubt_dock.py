@@ -28,8 +28,8 @@ from qgis.PyQt.QtWidgets import (
 
 from ...core.common.errors import RoadExtractionError
 from ...core.corrections.corrections import taken_reading
-from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
+from ...processing_provider.styling import WORDS
 from ...processing_provider.texts import tr
 from ..widgets import button, choices, column, give_map_back, row, say, show_extent, take_map, wrapped
 from .corrections_layer import add_correction, corrections_of, corrections_of_survey, lay_above, new_corrections_layer, take_back

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from qgis.core import NULL, Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
 from ...core.common.texts import places_in
-from ...processing_provider.results.attributes import WORDS, second_reading
 from ...processing_provider.results.road_maps import RoadMap
+from ...processing_provider.styling import WORDS, second_reading
 from ...processing_provider.texts import told, tr
 from .section import titles_of
 

@@ -20,8 +20,8 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ...processing_provider.results.attributes import title_of as title_expression
 from ...processing_provider.results.road_maps import output_of
+from ...processing_provider.styling import title_of as title_expression
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought

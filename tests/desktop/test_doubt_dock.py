@@ -11,9 +11,9 @@ from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import smart_pick
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
-from lanewright.processing_provider.layers import QgisSource
-from lanewright.processing_provider.results.attributes import second_reading
+from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
+from lanewright.processing_provider.styling import second_reading
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt

@@ -18,9 +18,8 @@ from lanewright.desktop.layout.axes import OVERLAP, accuracy_of, axes_of, lines_
 from lanewright.desktop.layout.drawing import profile_pages, section_pages
 from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout, unused_name, write_pdf
 from lanewright.desktop.menu import credit_of, sheet_values, shown_layers
-from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
-from lanewright.processing_provider.styling import LOOKS, STYLES, apply_style
+from lanewright.processing_provider.styling import LOOKS, STYLES, apply_style, explain_attributes
 from qgis import processing
 from qgis.core import (
     Qgis,

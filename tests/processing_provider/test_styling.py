@@ -21,7 +21,7 @@ from lanewright.core.common.features import (
     ROADSIDE_OBJECTS,
 )
 from lanewright.core.driving.layers import LANE_TYPES
-from lanewright.processing_provider.layers import qgis_fields
+from lanewright.processing_provider.call import qgis_fields
 from lanewright.processing_provider.results.road_maps import Run
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, style_on_load
 from lanewright.processing_provider.texts import speak

@@ -4,14 +4,15 @@ import json
 from pathlib import Path
 
 import laspy
-from lanewright.products.cloud import copc
+from lanewright.core.survey.las import copc_writer
 
 ENTRY = 32  # bytes of an entry of the hierarchy
 
 
-def write_copc(source, path, **chosen):
+def write_copc(source, path, in_a_node=2_000):
     """Write the points of a LAS or LAZ file (point format 6 to 8) as COPC; returns the path."""
-    return copc.write_copc(laspy.read(source), path, **chosen)
+    copc_writer.write_copc(laspy.read(source), path, in_a_node)
+    return str(path)
 
 
 def write_vpc(path, names, overview="", corner=(500000.0, 5400000.0, 0.0), edge=100.0, crs=""):

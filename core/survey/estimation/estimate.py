@@ -17,9 +17,8 @@ from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
 from .adjustment import Adjusted, Returns, ScannerSplitter, grown_poses, lines_of_each, scan_line_directions, steps_of, told_apart
-from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
+from .poses import YAW, HeadTrack, Poses, Spinning, first_poses, head_heights, known_intervals, spinning_scanners, turning_heads
 from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of, thinned
-from .turning_head import HeadTrack, head_heights, turning_heads
 
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
 
