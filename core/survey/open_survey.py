@@ -39,11 +39,11 @@ from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_traj
 from .weights import FRAME, READING, STORE, VEHICLE
 
 
-def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
                 progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
     """Read a survey, or take what an earlier run read from the work folder.
 
-    paths : LAS, LAZ or COPC files in any order
+    paths : LAS, LAZ or COPC files in any order, or their headers
     trajectory, settings, progress : as in `read_survey`
     execution : who runs the phases that read from the survey, and the work folder
 
