@@ -259,12 +259,14 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             markings.append(_Marking(pieces.order[of_it], shape, kind))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    undrawn = [marking for marking in markings if marking.outline is None]
+    striped, undrawn = ([marking for marking in markings if (marking.outline is None) == wanted] for wanted in (False, True))
     outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
                                  [marking.rows for marking in undrawn], 1.0,
                                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
-    drawn = [next(outlines) if marking.outline is None
-             else [lifted(marking.outline, np.stack(_columns_at(pieces.paint, "xyz", marking.rows), axis=1) * COORDINATE_SCALE)] for marking in markings]
+    rows = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in striped)])
+    places = np.stack(_columns_at(pieces.paint, "xyz", rows), axis=1) * COORDINATE_SCALE
+    of_stripes = iter(np.split(places, np.cumsum([len(marking.rows) for marking in striped])))
+    drawn = [next(outlines) if marking.outline is None else [lifted(marking.outline, next(of_stripes))] for marking in markings]
     return markings, drawn, sum(kind == NOT_PAINT for members, kind in classes if members)
 
 
