@@ -25,12 +25,12 @@ from .sequence import (
     best_sequence,
     lane_places,
     lane_strips,
-    least_nats,
     misnamed_costs,
     probabilities,
     separated_kinds,
     strip_costs,
     transitions,
+    ways,
 )
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading
 
@@ -103,7 +103,7 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
 
 
 def _remembered(candidates, evidence, weights):
-    """(N,) int, intervals of which something is known, and (2, N - 1) what of lanes, and of directions, is left on the way to the next one, 0 to 1."""
+    """(N,) int, intervals of which something is known, and (2, N - 1) what of lanes, and of directions, is left at the next one, 0 to 1."""
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = candidates.painted
     shown, lined = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1), np.flatnonzero(paint.any(1) | evidence.bare)
@@ -141,11 +141,11 @@ def _estimate_of_road(candidates, evidence, first_direction, sections, misnamed,
         cost = sections.cost - np.concatenate(misnamed)
         # what is laid out alike along the road was seen once
         seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
-        named, unnamed, seen_once = costs = np.stack([sections.cost, cost, seen_once])[:, lined]
-        least = least_nats(costs, transition)
+        costs = np.stack([sections.cost, cost, seen_once])[:, lined]
+        least = ways(costs, transition, np.min)
         choice[lined], total = best_sequence(least[0, 0], transition)
         _, unnamed_total = unnamed_best = best_sequence(least[0, 1], transition)
-        second[lined] = behind_best(unnamed, transition, least[:, 1], unnamed_best, candidates.length[lined], weights.repeats)
+        second[lined] = behind_best(costs[1], transition, least[:, 1], unnamed_best, candidates.length[lined], weights.repeats)
         posterior[lined], sureness[lined] = probabilities(costs[::2], transition)
         once[lined] = least[:, 2].sum(axis=0)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,

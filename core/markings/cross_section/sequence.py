@@ -6,7 +6,7 @@ the best sequence of them along the road.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -553,14 +553,18 @@ def _core(values):
     return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
 
 
-def _ways(cost, transition, joined):
-    """(2, ..., I, K) nats of the ways up to each cross-section and with it, and on from it; `joined` makes one of several, given them and an axis."""
-    forward, backward = ways = np.stack([cost, np.zeros(cost.shape)])
+def ways(cost: np.ndarray, transition: np.ndarray, joined: Callable[..., np.ndarray]) -> np.ndarray:
+    """(2, ..., I, K) nats of the ways up to each cross-section and with it, and on from it.
+
+    cost : (..., I, K) nats, inf where there is no cross-section; transition : (I - 1, K, K) nats
+    joined : makes one of several ways, given them and an axis: np.min the most probable one
+    """
+    forward, backward = both = np.stack([cost, np.zeros(cost.shape)])
     for i in range(1, cost.shape[-2]):
         forward[..., i, :] += joined(forward[..., i - 1, :, None] + transition[i - 1], -2)
     for i in range(cost.shape[-2] - 1, 0, -1):
         backward[..., i - 1, :] = joined(transition[i - 1] + (cost[..., i, :] + backward[..., i, :])[..., None, :], -1)
-    return ways
+    return both
 
 
 def _sum_of(nats, axis):
@@ -571,16 +575,8 @@ def _sum_of(nats, axis):
         return least.squeeze(axis) - np.log(np.exp(least - nats).sum(axis))
 
 
-def least_nats(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
-    """(2, ..., I, K) nats of the most probable way up to each cross-section and with it, and of the one on from it.
-
-    `cost` : (..., I, K) nats, inf where there is no cross-section; `transition` : (I - 1, K, K) nats.
-    """
-    return _ways(cost, transition, np.min)
-
-
 def best_sequence(forward: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
-    """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole; `forward` : the first of `least_nats`."""
+    """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole; `forward` : the first of `ways`."""
     choice = np.full(len(forward), np.argmin(forward[-1]))
     for i in range(len(forward) - 1, 0, -1):
         choice[i - 1] = np.argmin(forward[i - 1] + transition[i - 1][:, choice[i]])
@@ -588,8 +584,8 @@ def best_sequence(forward: np.ndarray, transition: np.ndarray) -> tuple[np.ndarr
 
 
 def probabilities(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
-    """(..., I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `least_nats`."""
-    return softmax(-_ways(cost, transition, _sum_of).sum(axis=0), axis=-1)
+    """(..., I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `ways`."""
+    return softmax(-ways(cost, transition, _sum_of).sum(axis=0), axis=-1)
 
 
 def behind_best(cost: np.ndarray, transition: np.ndarray, least: np.ndarray, best: tuple[np.ndarray, float], length: np.ndarray,
@@ -599,7 +595,7 @@ def behind_best(cost: np.ndarray, transition: np.ndarray, least: np.ndarray, bes
     Where the two differ over a longer way than `repeats`, m, they differ in how the whole road is laid out. What is seen there again and again was
     laid out and driven once, so it counts as on a way of that length.
 
-    cost, transition : as of `least_nats`, which gave `least`; best : as of `best_sequence`; length : (I,) m of each interval
+    cost, transition : as of `ways`, of which `least` are the most probable; best : as of `best_sequence`; length : (I,) m of each interval
     """
     (choice, total), (forward, backward) = best, least
     apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
