@@ -385,18 +385,19 @@ class Stages:
         if title:
             self.progress.info(title)
         began = time.perf_counter()
-        if self.kept is not None and depends is not None:
+        kept = None if depends is None else self.kept
+        if kept is not None:
             self._digest = digest((self._digest, name, depends() if callable(depends) else depends))
-        if self.kept is not None and depends is not None and self.kept.known(name, self._digest):
+        if kept is not None and kept.known(name, self._digest):
             self.progress.info("The result of the last run is used again.")
-            result = self.kept.result(name)
+            result = kept.result(name)
             again(result)
         else:
-            if renewed and self.kept is not None:
-                options["before"] = self.kept.before(name)
+            if renewed and kept is not None:
+                options["before"] = kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
-            if self.kept is not None and depends is not None:
-                self.kept.keep(name, self._digest, result, partial(free, result), renewed)
+            if kept is not None:
+                kept.keep(name, self._digest, result, partial(free, result), renewed)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

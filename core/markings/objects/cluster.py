@@ -94,7 +94,10 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
             check_cancelled()
             cluster[k][marking.rows] = number
             polygons += drawn
-            rows += [_row(marking, number, line, scanned)] * len(drawn)
+            shape = marking.shape
+            rows += [dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
+                          offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation, scan_m=scanned,
+                          points=shape.points, **{"class": marking.kind})] * len(drawn)
     for road, numbers in zip(roads, cluster):
         _put(clustered.store, road, numbers, marking_points)
     refused = sum(without for _, _, without in named)
@@ -313,13 +316,6 @@ def _by_cluster(labels, fewest):
     labels = labels[order[:np.count_nonzero(large)]]
     starts = np.flatnonzero(np.diff(labels, prepend=-1))
     return order, np.r_[starts, len(labels)], labels[starts]
-
-
-def _row(marking, number, line, scanned):
-    shape = marking.shape
-    return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
-                offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,
-                scan_m=scanned, points=shape.points, **{"class": marking.kind})
 
 
 def _scanning_distances(paint, markings, line, frame):

@@ -162,11 +162,9 @@ def curbs_along(source: Any, steps_by_method: Mapping[str, Mapping[tuple[int, st
              for road in roads for side in SIDE_SIGNS for method, names in methods.items()]
     looks = {road: look_at(road) for road in roads} if look_at else {}
     phase = Phase(_curbs_of_side, source, (looks,), lambda item: f"the {item[1]} side of road {item[0]}")
-    parts: dict[str, list[CurbPoints]] = {method: [] for method in methods}
-    for (_, _, method, _), points in zip(items, source.executor.run(phase, items)):
-        parts[method] += [] if points is None else [points]
-    crs = getattr(source, "survey", source).crs
-    return {method: CurbPoints.join(of_method, crs) for method, of_method in parts.items()}
+    parts, crs = list(source.executor.run(phase, items)), getattr(source, "survey", source).crs
+    return {method: CurbPoints.join([points for item, points in zip(items, parts) if item[2] == method and points is not None], crs)
+            for method in methods}
 
 
 def _curbs_of_side(source: Any, item: tuple[int, str, str, Mapping[str, SideSteps]], looks: dict[int, RoadLook]) -> CurbPoints | None:
