@@ -71,10 +71,10 @@ def measure(arguments):
         result.road_points.close()
     noted = dict(length=sum(road.length for road in result.frame.roads), points=result.survey_facts["read"], after=after, phases=recorder.phases)
     arguments.times.write_text(json.dumps(noted))
-    print("| phase | tasks | s: all, longest | sent once (kB) | results (kB) | the caller alone before and beside it (s) |\n|---|---:|---:|---:|---:|---:|")
+    print("| phase | tasks | s: all | longest | the caller alone (s) | sent once (kB) | results (kB) |\n|---|---:|---:|---:|---:|---:|---:|")
     for phase in recorder.phases:
-        print(f"| {phase['name']} | {len(phase['seconds'])} | {sum(phase['seconds']):.2f}, {max(phase['seconds'], default=0.0):.2f} | "
-              f"{phase['sent'] / 1e3:.0f} | {sum(phase['results']) / 1e3:.0f} | {phase['caller']:.2f} |")
+        seconds, sent, results = phase["seconds"], phase["sent"] / 1e3, sum(phase["results"]) / 1e3
+        print(f"| {phase['name']} | {len(seconds)} | {sum(seconds):.2f} | {max(seconds, default=0.0):.2f} | {phase['caller']:.2f} | {sent:.0f} | {results:.0f} |")
 
 
 def span_of(seconds, workers, overhead, serial):
