@@ -74,7 +74,8 @@ def measure(arguments):
     print("| phase | tasks | s: all | longest | the caller alone (s) | sent once (kB) | results (kB) |\n|---|---:|---:|---:|---:|---:|---:|")
     for phase in recorder.phases:
         seconds, sent, results = phase["seconds"], phase["sent"] / 1e3, sum(phase["results"]) / 1e3
-        print(f"| {phase['name']} | {len(seconds)} | {sum(seconds):.2f} | {max(seconds, default=0.0):.2f} | {phase['caller']:.2f} | {sent:.0f} | {results:.0f} |")
+        print(f"| {phase['name']} | {len(seconds)} | {sum(seconds):.2f} | {max(seconds, default=0.0):.2f} | {phase['caller']:.2f} | {sent:.0f} "
+              f"| {results:.0f} |")
 
 
 def span_of(seconds, workers, overhead, serial):
