@@ -221,17 +221,13 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
         stages.progress.warn(result.without_paint)
+    lost = map_corrections.unmatched
     if len(map_corrections):
-        _tell_corrections(map_corrections, stages.progress)
+        stages.progress.info(f"Corrections: {len(map_corrections)}, of which {len(map_corrections) - len(lost)} were made.")
+    if lost:
+        stages.progress.warn(f"Corrections that match nothing in this run any more ({len(lost)}): "
+                             + "; ".join(correction.described() for correction in lost) + ".")
     return result
-
-
-def _tell_corrections(corrections, progress):
-    """Say in the log how many corrections were made, and list those that match nothing."""
-    progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
-    if corrections.unmatched:
-        progress.warn(f"Corrections that match nothing in this run any more ({len(corrections.unmatched)}): "
-                      + "; ".join(correction.described() for correction in corrections.unmatched) + ".")
 
 
 def _span(survey):

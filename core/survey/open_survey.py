@@ -184,7 +184,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
-    _put_in_order(survey, shared, progress.part(parts_at, read_at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
     mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
@@ -209,13 +212,6 @@ def _survey_of(files, frame, read, settings, crs, progress):
     scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
     return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
-
-
-def _put_in_order(survey, shared, progress):
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.executor = shared.ordering
-        survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):
