@@ -10,10 +10,10 @@ import re
 from collections import namedtuple
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
+from ..core.common import features
 from ..core.common.setting import limits_of
-from .map_layers import MAP_LAYERS
 from .texts import help_texts, tr
 
 # In the order of the work
@@ -240,3 +240,19 @@ def choice_refused(label, name, value, choices):
     """What may be given, where a choice may not be."""
     return tr("{label} ({name}) is {value}; it must be one of {choices}.").format(
         label=label, name=name, value=value, choices=", ".join(choices))
+
+
+# The layers of the road map: what each is called, its fields and its geometry, for every algorithm that takes or gives it.
+
+class MapLayer(NamedTuple):
+    """A layer of the road map; the geometry is that of Features."""
+
+    label: str
+    schema: tuple
+    geometry: str
+
+
+MAP_LAYERS = {name: MapLayer(help_texts()[name][0], getattr(features, name), geometry) for name, geometry in dict(
+    SCANLINES="LineStringZM", CURB_POINTS="PointZ", ROAD_EDGES="LineStringZ", ROAD_SURFACE="PolygonZ", MARKINGS="PolygonZ",
+    MARKING_LINES="LineStringZ", DRIVING_LINES="LineStringZ", LANES="PolygonZ", CURVE_ELEMENTS="None", PASSES="LineStringZ",
+    ROADSIDE="LineStringZ", ROADSIDE_OBJECTS="PointZ", CROSS_SECTIONS="LineStringZ", SIGNALS="PointZ").items()}

@@ -15,11 +15,10 @@ from ..core.common.parallel import cancellation_scope, claim_memory, is_lack_of_
 from ..core.common.progress import RememberedMessages
 from ..core.io.local_files import gdal_exceptions, open_raster
 from ..core.lazy import gdal
-from .algorithm import WARNINGS, settings_class
+from .algorithm import MAP_LAYERS, WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
-from .map_layers import MAP_LAYERS
 from .provenance import provenance_now, run_facts, sign_file, sign_report
-from .survey_files import cloud_files, read_trajectory_source, survey_name, trajectory_path
+from .survey_input import cloud_files, read_trajectory_source, survey_name, trajectory_path
 from .texts import tr
 from .vector_source import in_file_units, read_features
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from ..core.countries.catalogue import COUNTRIES
-from .algorithm import Algorithm, settings_of
-from .map_layers import MAP_LAYERS
+from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
 from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
 from .survey_input import SURVEY_SETTINGS, add_execution, corrections_of, estimated_trajectory, execution_of, frame_of, road_points_of, survey_inputs

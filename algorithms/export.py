@@ -8,9 +8,8 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
 from ..core.lazy import shapely
-from .algorithm import Algorithm, settings_of
+from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .call import existing_file
-from .map_layers import MAP_LAYERS
 from .survey_input import READING_SETTINGS, open_survey_with, road_points_of
 from .texts import languages, told, tr
 
@@ -62,8 +61,7 @@ def map_layers(call, progress, lanelets):
 
 def write_map_layers(call, layers, progress):
     """Hand on the layers of a map; returns the numbers."""
-    for note in layers.notes:
-        progress.warn(note)
+    progress.warn_all(layers.notes)
     if call.wants("LANES"):
         call.layer("LANES", layers.lane_areas())
     for name in filter(call.wants, READ_LAYERS):
@@ -117,8 +115,7 @@ def lanes_with_borders(source):
 
 def warn_of_faults(notes, findings, progress):
     """Say what a map lacks, and what the check of its file found."""
-    for text in (*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())):
-        progress.warn(text)
+    progress.warn_all((*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())))
 
 
 def fault_table(findings):
@@ -359,8 +356,7 @@ class ExportCad(Algorithm):
             raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
                 path=path, named=named, kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
-        for note in source.notes:
-            progress.warn(note)
+        progress.warn_all(source.notes)
         numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
         if call.wants("REPORT"):
             facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
@@ -519,8 +515,7 @@ class CheckMap(Algorithm):
         whole, crs, notes = read_map(call, progress.part(0.0, 0.4), lanelets)
         rest = progress.part(0.4, 0.95)
         check = check_lanelets(whole, *node_places(whole, crs), rest) if lanelets else check_opendrive(whole, crs, rest)
-        for note in notes:
-            progress.warn(note)
+        progress.warn_all(notes)
         call.layer("OUTPUT", check.to_features())
         if call.wants("REPORT"):
             call.text("REPORT", map_check_report(check, path, notes))
@@ -631,6 +626,7 @@ class ClassifyCloud(Algorithm):
             self.add_map_layer(name, optional=True)
         self.add_settings(CLOUD_SETTINGS, advanced=True)
         self.add_settings(READING_SETTINGS)
+        self.add_input("flag", "COPC", default=False, advanced=True)
         self.add_output("folder", "OUTPUT")
         self.add_output("folder", "UNROLLED", optional=True, by_default=False)
 
@@ -642,7 +638,7 @@ class ClassifyCloud(Algorithm):
         from ..products.cloud.rewrite import classified_copy
 
         files = read_headers(call.point_clouds(), given=call.crs())
-        copies = _copies(call, files, progress)
+        copies = _copies(call, files)
         # what was drawn by hand has no station
         layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
                                              if field.name in read.split()], MAP_LAYERS[name].geometry)
@@ -664,14 +660,15 @@ class ClassifyCloud(Algorithm):
                 "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
 
 
-def _copies(call, files, progress):
+def _copies(call, files):
     """(path, path of the unrolled copy) for each of the files, whose names must differ."""
-    names = [Path(file.path).name for file in files]
-    plain = [f"{name[:-len('.copc.laz')]}.laz" if name.lower().endswith(".copc.laz") else name for name in names]
-    twice = next((name for k, name in enumerate(plain) if name.lower() in {other.lower() for other in plain[:k]}), None)
+    from ..core.survey.road_points_las import is_copc
+
+    names = [Path(file.path) for file in files]
+    names = [f"{path.stem}.copc.laz" if call.value("COPC") and not is_copc(path) and file.point_format not in (4, 5, 9, 10)   # not with waveforms
+             else path.name for file, path in zip(files, names)]
+    twice = next((name for k, name in enumerate(names) if name.lower() in {other.lower() for other in names[:k]}), None)
     if twice:
         raise RoadExtractionError(
             tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
-    if plain != names:
-        progress.info(tr("COPC files are written as LAZ: their octree is not kept. QGIS makes a COPC of a LAZ by Create COPC."))
-    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in plain]
+    return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in names]

@@ -106,8 +106,7 @@ class SurfaceOfRoad(Algorithm):
         settings = call.settings(SURFACE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.4), ABOVE_SURFACE)
         model = make_surface_model(survey, layers, settings, progress.part(0.4, 0.9))
-        for note in model.notes:
-            progress.warn(note)
+        progress.warn_all(model.notes)
         lines, faces = surface_to_features(model)
         call.layer("BREAKLINES", lines)
         call.layer("TIN", faces)

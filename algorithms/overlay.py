@@ -63,8 +63,7 @@ class ProposeControlPoints(Algorithm):
         rough = rough_place(image, intensity.crs, settings.search, settings.pixel_size, _rough_points(call, image, intensity.crs))
         progress.info(tr("The image is looked for by {source}.").format(source=rough.source))
         proposal = propose_control_points(image, intensity, rough, settings, progress.part(0.0, 0.95))
-        for note in proposal.notes:
-            progress.warn(note)
+        progress.warn_all(proposal.notes)
         values = {"PROPOSED": len(proposal), "ACCEPTED": int(proposal.accepted.sum()), "GROUND_PIXEL": proposal.size, "TURN": proposal.turn_degrees}
         if values["ACCEPTED"]:
             values["RMSE"] = proposal.rmse
@@ -118,8 +117,7 @@ class GeoreferenceImage(Algorithm):
             progress.info(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
                             "a transformation, is QGIS saying the same and harmless."))
         result = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
-        for note in result.notes:
-            progress.warn(note)
+        progress.warn_all(result.notes)
         values = _numbers(result)
         progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
             count=values["POINTS"], order=result.settings.order, rmse=values["RMSE"], left=result.left_out_rmse))

@@ -3,8 +3,7 @@
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
 from ..core.lazy import np
 from .algorithm import Algorithm, settings_of
-from .survey_files import trajectory_features
-from .survey_input import SURVEY_SETTINGS, imported_trajectory
+from .survey_input import SURVEY_SETTINGS, imported_trajectory, trajectory_features
 from .texts import tr
 
 
@@ -27,8 +26,7 @@ class ImportTrajectory(Algorithm):
         trajectory = clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:
             progress.info(note)
-        for doubt in trajectory.doubts:
-            progress.warn(doubt)
+        progress.warn_all(trajectory.doubts)
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given. Set CRS of the trajectory, or, where its coordinates are those of the "
                              "point clouds, CRS to bring it to."))
@@ -53,8 +51,7 @@ class EstimateTrajectory(Algorithm):
         from ..products.report.survey import estimated_trajectory_report
 
         estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
-        for note in estimate.cloud_notes + estimate.notes:
-            progress.warn(note)
+        progress.warn_all(estimate.cloud_notes + estimate.notes)
         track = estimate.trajectory
         progress.info(estimate.summary())
         call.layer("TRAJECTORY", trajectory_features(track, sigma_m=estimate.sigma, sigma_z_m=estimate.sigma_height))
@@ -83,8 +80,7 @@ class InspectSurvey(Algorithm):
 
         inspection = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95))
-        for note in inspection.notes:
-            progress.warn(note)
+        progress.warn_all(inspection.notes)
         progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
                         "intensities {darkest} to {brightest}.").format(
             count=f"{inspection.count:,}", files=len(inspection.files), density=inspection.per_area["mean"], scanners=len(inspection.scanners),

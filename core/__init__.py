@@ -16,8 +16,7 @@ PUBLIC = {
     "survey.trajectory.time_systems": ("SECONDS_PER_WEEK", "unwrap_week"),   # times beyond the end of a week
     "survey.trajectory.trajectory": ("Trajectory", "clean_trajectory", "reproject_trajectory"),   # positions of the vehicle
     "survey.estimation.estimate": ("EstimatedTrajectory", "WAYS"),   # the trajectory from the clouds alone
-    "survey.frame.road_frame": ("RoadFrame", "build_frame"),   # station, offset and height along roads
-    "survey.frame.passes": ("Pass",),   # one drive along a road
+    "survey.frame.road_frame": ("Pass", "RoadFrame", "build_frame"),   # station, offset and height along roads, and single drives on them
     "survey.frame.projection": ("RoadProjection",),   # station and offset of many points
     "survey.frame.placement": ("FrameLines", "line_parts", "lines_in_frame"),   # lines of a layer in the road frame
     "survey.store.records": ("COORDINATE_SCALE", "Points", "take_rows"),   # points, whose coordinates are whole numbers of 0.1 mm

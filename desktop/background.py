@@ -23,7 +23,8 @@ from qgis.core import (
 from ..algorithms.destinations import table_of
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import cancellation_scope
-from ..core.common.progress import Progress
+from ..core.common.progress import RemainingTime
+from ..processing_provider.call import FeedbackProgress
 from ..processing_provider.texts import told, tr
 from .widgets import say
 
@@ -80,24 +81,11 @@ def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radiu
     return task
 
 
-class _TaskProgress(Progress):
-    def __init__(self, task):
-        self.task = task
-
-    def report(self, fraction):
-        self.check_cancelled()
-        self.task.setProgress(100.0 * fraction)
-
-    def check_cancelled(self):
-        if self.task.isCanceled():
-            raise Cancelled
-
-
 def _worked(task, clouds, place, radius, work):
     """What the background does: the result of the work, None where it is no longer wanted."""
-    from ..core.survey.las.near import points_near
+    from ..core.survey.las.parallel_reader import points_near
 
-    progress = _TaskProgress(task)
+    progress = FeedbackProgress(task, RemainingTime(lambda: 0.0))   # a clock that stands: a task does not say how long it will take
     try:
         with cancellation_scope(progress):
             return {"result": work(points_near(clouds, *place, radius, progress))}  # QGIS asks whether it is empty, which an array refuses to say

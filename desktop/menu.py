@@ -1,4 +1,4 @@
-"""The Lanewright menu and its button in the plugin toolbar: what a user reaches without opening the toolbox."""
+"""The Lanewright menu and its button in the plugin toolbar: what a user reaches without opening the toolbox; and the window of the manual."""
 
 from __future__ import annotations
 
@@ -6,19 +6,37 @@ from pathlib import Path
 from typing import Any
 
 from qgis.core import Qgis, QgsApplication, QgsMapLayer, QgsProcessingModelAlgorithm, QgsProcessingUtils, QgsProject
-from qgis.PyQt.QtCore import QObject, Qt, QUrl
-from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QMenu, QTableWidget, QTableWidgetItem, QTabWidget, QWidget
+from qgis.PyQt.QtCore import QObject, Qt, QUrl, pyqtSlot
+from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon, QPixmap, QTextDocument
+from qgis.PyQt.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QMainWindow,
+    QMenu,
+    QTableWidget,
+    QTableWidgetItem,
+    QTabWidget,
+    QTextBrowser,
+    QToolBar,
+    QWidget,
+)
 
 from ..algorithms.destinations import destination_path
 from ..algorithms.export import DRAWN
 from ..core.pipeline.kept_run import WINDOW
-from ..processing_provider.results.layer_tree import NAMES_ONLY, REPLACES_LAST_RUN
-from ..processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
-from ..processing_provider.results.runs import last_report, last_run, run_table, run_tables
-from ..processing_provider.texts import tr
+from ..processing_provider.results.road_maps import (
+    NAMES_ONLY,
+    REPLACES_LAST_RUN,
+    RoadMap,
+    clouds_of,
+    last_report,
+    last_run,
+    road_maps,
+    run_table,
+    run_tables,
+)
+from ..processing_provider.texts import chosen_language, tr
 from .background import SampleRun
-from .manual import ManualWindow
 from .widgets import all_is_there, column, say
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
@@ -275,7 +293,7 @@ def layers_below(project: QgsProject, maps: list[RoadMap]) -> list[QgsMapLayer]:
     inside = {layer.id() for road_map in maps for layer in shown_layers(road_map, project, hidden=True)}
     nodes = project.layerTreeRoot().findLayers()
     return [node.layer() for node in nodes if node.layer() and node.layer().id() not in inside and node.layer().isSpatial()
-            and node.layer().type() != Qgis.LayerType.Vector]
+            and node.layer().type() not in (Qgis.LayerType.Vector, Qgis.LayerType.PointCloud)]
 
 
 def credit_of(layer: QgsMapLayer) -> str:
@@ -331,3 +349,77 @@ def _in_browser():
     path = QgsProcessingUtils.generateTempFilename("runs.html")
     Path(path).write_text(run_table(), encoding="utf-8")
     QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+
+
+# The manual in a window of its own: the pages of docs/manual, read from the plugin's folder, in the user's language where they are translated.
+
+PAGES = Path(__file__).resolve().parents[1] / "docs" / "manual"
+SCHEME = "lanewright"  # lanewright:detectcurbs is what an algorithm's Help button opens
+
+
+class ManualWindow(QMainWindow):
+    def __init__(self, parent=None):
+        super().__init__(parent, windowTitle=tr("Lanewright manual"))
+        self.resize(980, 760)
+        self.browser = PageBrowser(self)
+        self.setCentralWidget(self.browser)
+        bar = QToolBar(self)
+        self.addToolBar(bar)
+        bar.addAction(tr("Contents"), self.open)
+        bar.addAction(tr("Back"), self.browser.backward)
+        bar.addAction(tr("Forward"), self.browser.forward)
+        QDesktopServices.setUrlHandler(SCHEME, self.open_address)
+
+    @pyqtSlot()
+    def open(self):
+        self.show_page("index")
+
+    @pyqtSlot(QUrl)
+    def open_address(self, url):
+        """What a lanewright: address names; the contents where there is no such page."""
+        self.show_page(url.path().strip("/"))
+
+    def show_page(self, name):
+        self.browser.setSource(QUrl.fromLocalFile(str(page_path(name))), QTextDocument.ResourceType.MarkdownResource)
+        self.show()
+        self.raise_()
+
+    def forget(self):
+        QDesktopServices.unsetUrlHandler(SCHEME)
+        self.close()
+
+
+def page_path(name, language=""):
+    """The file of a page in a language, by default that of QGIS; in English where it is not translated, the contents where there is no such page."""
+    translated = PAGES / (language or chosen_language())[:2]
+    pages = [folder / f"{page}.md" for page in (name, "index") for folder in (translated, PAGES)]
+    return next(page for page in pages if page.is_file())
+
+
+class PageBrowser(QTextBrowser):
+    """Markdown pages with links among them; addresses elsewhere open in the web browser."""
+
+    def __init__(self, parent):
+        super().__init__(parent, openLinks=False, anchorClicked=self.follow)
+        self.document().setDefaultStyleSheet("td, th { padding: 2px 8px; } ")
+
+    def follow(self, url):
+        if url.scheme() in ("http", "https"):
+            QDesktopServices.openUrl(url)
+            return
+        target = self.source().resolved(url)
+        if target.path().endswith(".md"):
+            self.setSource(target, QTextDocument.ResourceType.MarkdownResource)
+        else:
+            self.scrollToAnchor(url.fragment())
+
+    def loadResource(self, kind, url):
+        """Pictures no wider than the window."""
+        resource = super().loadResource(kind, url)
+        if kind == QTextDocument.ResourceType.ImageResource:
+            picture = QPixmap(self.source().resolved(url).toLocalFile())
+            widest = max(self.viewport().width() - 40, 300)
+            if picture.width() > widest:
+                return picture.scaledToWidth(widest, Qt.TransformationMode.SmoothTransformation)
+            return picture
+        return resource

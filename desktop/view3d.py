@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
+import shapely
 from qgis.core import (
     Qgis,
     QgsColorRampShader,
@@ -14,38 +16,42 @@ from qgis.core import (
     QgsFillSymbol,
     QgsGeometry,
     QgsGradientColorRamp,
-    QgsLineString,
-    QgsMultiPolygon,
     QgsNullSymbolRenderer,
-    QgsPoint,
     QgsPointCloudExtentRenderer,
     QgsPointCloudLayer,
-    QgsPolygon,
     QgsProcessingUtils,
     QgsProject,
     QgsProperty,
     QgsPropertyCollection,
     QgsProviderRegistry,
+    QgsTask,
     QgsVector3D,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
 from qgis.gui import QgisInterface
+from qgis.PyQt import sip
 from qgis.PyQt.QtGui import QColor
 
 from ..core.common.errors import RoadExtractionError
+from ..core.lazy import laspy
+from ..core.survey.las.copc_writer import write_copc
 from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
 from ..processing_provider.texts import tr
+from .background import with_points
 
 STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"
 SAMPLE = 50_000       # points by which the brightness of a cloud is set
 LINE_WIDTH = 2.0       # pixels of driving lines and edges without a curb
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
+POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 # colour, and m above the surface, or the two would flicker; of dashed lines the dashes are markings
 LOOKS = {"ROAD_SURFACE": ("#8d9299", 0.0), "MARKINGS": ("#ffffff", 0.02), "ROAD_EDGES": ("#26282b", 0.02), "DRIVING_LINES": ("#1554b0", 0.05)}
+AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
+TASKS: set[QgsTask] = set()   # that read points; QGIS keeps no reference
 DISTANCE, PITCH = 45.0, 60.0  # m from the place to the camera, and degrees from straight down
 
 
@@ -110,15 +116,14 @@ def _curb_walls(edges):
     for feature in edges.getFeatures():
         if feature["edge"] == "pavement" or feature["part"] == "top":
             continue
-        stones = QgsMultiPolygon()
-        vertices = list(feature.geometry().vertices())
-        for a, b in zip(vertices, vertices[1:]):
-            length = a.distance(b) or 1.0
-            across = CURB_WIDTH / 2 * (b.y() - a.y()) / length, CURB_WIDTH / 2 * (a.x() - b.x()) / length
-            stones.addGeometry(QgsPolygon(QgsLineString([QgsPoint(end.x() + side * across[0], end.y() + side * across[1], end.z())
-                                                         for end, side in ((a, 1), (a, -1), (b, -1), (b, 1), (a, 1))])))
+        places = shapely.get_coordinates(shapely.from_wkb(bytes(feature.geometry().asWkb())), include_z=True)
+        way = np.diff(places[:, :2], axis=0)
+        across = np.c_[way[:, 1], -way[:, 0], np.zeros(len(way))] * (CURB_WIDTH / 2 / np.fmax(np.hypot(*way.T), 1e-6))[:, None]
+        stones = QgsGeometry()
+        stones.fromWkb(shapely.to_wkb(shapely.multipolygons(shapely.polygons(np.stack(
+            [places[:-1] + across, places[:-1] - across, places[1:] - across, places[1:] + across], axis=1)))))
         wall = QgsFeature(made.fields())
-        wall.setGeometry(QgsGeometry(stones))
+        wall.setGeometry(stones)
         wall["height_m"] = feature["height_m"] or UNKNOWN_HEIGHT
         made.dataProvider().addFeatures([wall])
     # a file: of layers in memory QGIS 3.40 knows no heights, and shows nothing
@@ -140,33 +145,70 @@ def _curb_walls(edges):
 
 
 def _clouds(road_map, project):
-    """The survey's point clouds as layers of the project, the brighter the stronger their echo; the map shows nothing of them."""
+    """The survey's point clouds as layers of the project, of those that QGIS can show."""
+    shows = QgsProviderRegistry.instance().preferredProvidersForUri
+    return [_cloud(path, road_map, project) for path in clouds_of(road_map, project)[0] if shows(path)]
+
+
+def _cloud(path, road_map, project):
+    """A point cloud as a layer of the project, the brighter the stronger its echo; the map shows nothing of it."""
     from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer
 
     known = {layer.source(): layer for layer in project.mapLayers().values() if isinstance(layer, QgsPointCloudLayer)}
+    if path in known:
+        return known[path]
     options = QgsPointCloudLayer.LayerOptions()
     options.skipStatisticsCalculation = True
-    clouds = []
-    for path in clouds_of(road_map, project)[0]:
-        providers = QgsProviderRegistry.instance().preferredProvidersForUri(path)
-        if path not in known and providers:
-            cloud = known[path] = QgsPointCloudLayer(path, Path(path).name, providers[0].metadata().key(), options)
-            cloud.setRenderer(QgsPointCloudExtentRenderer(QgsFillSymbol.createSimple({"style": "no", "outline_style": "no"})))
-            weak, strong = _intensities(path)
-            shader = QgsColorRampShader(weak, strong, QgsGradientColorRamp(QColor(DARK), QColor(BRIGHT)))
-            shader.classifyColorRamp(2)
-            symbol, look = QgsColorRampPointCloud3DSymbol(), QgsPointCloudLayer3DRenderer()
-            symbol.setAttribute("Intensity")
-            symbol.setColorRampShader(shader)
-            symbol.setColorRampShaderMinMax(weak, strong)
-            symbol.setPointSize(1.0)
-            look.setSymbol(symbol)
-            look.setLayer(cloud)
-            cloud.setRenderer3D(look)
-            project.addMapLayer(cloud, False)
-            (road_map.group or project.layerTreeRoot()).addLayer(cloud)
-        clouds += [known[path]] if path in known else []
-    return clouds
+    provider = QgsProviderRegistry.instance().preferredProvidersForUri(path)[0].metadata().key()
+    cloud = QgsPointCloudLayer(path, Path(path).name, provider, options)
+    if not cloud.crs().isValid():
+        cloud.setCrs(road_map.vectors[0].crs())
+    cloud.setRenderer(QgsPointCloudExtentRenderer(QgsFillSymbol.createSimple({"style": "no", "outline_style": "no"})))
+    weak, strong = _intensities(path)
+    shader = QgsColorRampShader(weak, strong, QgsGradientColorRamp(QColor(DARK), QColor(BRIGHT)))
+    shader.classifyColorRamp(2)
+    symbol, look = QgsColorRampPointCloud3DSymbol(), QgsPointCloudLayer3DRenderer()
+    symbol.setAttribute("Intensity")
+    symbol.setColorRampShader(shader)
+    symbol.setColorRampShaderMinMax(weak, strong)
+    symbol.setPointSize(1.0)
+    look.setSymbol(symbol)
+    look.setLayer(cloud)
+    cloud.setRenderer3D(look)
+    project.addMapLayer(cloud, False)
+    (road_map.group or project.layerTreeRoot()).addLayer(cloud)
+    return cloud
+
+
+def _bring_points(road_map, place, canvas, project):
+    """Read the points about a place in the background and show them: as COPC, which QGIS shows without PDAL too."""
+    def ready(task, path, problem):
+        TASKS.discard(task)
+        if path and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
+            project.removeMapLayers([layer.id() for layer in project.mapLayers().values() if layer.customProperty(POINTS)])
+            cloud, settings = _cloud(path, road_map, project), canvas.mapSettings()
+            cloud.setName(title)
+            cloud.setCustomProperty(POINTS, True)
+            settings.setLayers([cloud, *settings.layers()])
+
+    paths, title = clouds_of(road_map, project)[0], tr("Points of the 3D view")
+    if paths:
+        TASKS.add(with_points(title, paths, place, AROUND, _as_copc, ready))
+
+
+def _as_copc(points):
+    """The path of a COPC file of (N, 4) x, y, z and intensity, at most MOST of them; "" of none."""
+    if not len(points):
+        return ""
+    points = points[::math.ceil(len(points) / MOST)]
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = np.full(3, 0.001), np.floor(points[0, :3])
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = points[:, :3].T
+    cloud.intensity = points[:, 3].astype(np.uint16)
+    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
+    write_copc(cloud, path)
+    return path
 
 
 def _intensities(path):
@@ -181,6 +223,7 @@ def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     """Open a 3D view of the road map with the camera over the middle of the map window; False where QGIS could not open one.
 
     Point clouds that the project shows come with it, else those of the survey where QGIS can show them: COPC, and with PDAL LAS and LAZ too.
+    Of others the points about the place come as soon as they are read.
     """
     project = QgsProject.instance()
     layers = give_3d_looks(road_map)
@@ -189,12 +232,16 @@ def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
         return False
     settings, view = canvas.mapSettings(), iface.mapCanvas()
     shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)]
-    settings.setLayers([*(shown or _clouds(road_map, project)), *layers])
+    shown = shown or _clouds(road_map, project)
+    settings.setLayers([*shown, *layers])
     settings.setTerrainRenderingEnabled(False)  # a flat one at height 0 would hide the road or hang far below it
     settings.setBackgroundColor(QColor("#e8edf2"))
     place = view.extent().center()
     x, y, z = place.x(), place.y(), height_at(road_map, QgsGeometry.fromPointXY(place), view.mapSettings().destinationCrs(), project)
     canvas.cameraController().setLookingAtPoint(settings.mapToWorldCoordinates(QgsVector3D(x, y, z)), DISTANCE, PITCH, 0.0)
+    if not shown:
+        there = QgsCoordinateTransform(view.mapSettings().destinationCrs(), road_map.vectors[0].crs(), project).transform(place)
+        _bring_points(road_map, (there.x(), there.y()), canvas, project)
     return True
 
 

@@ -12,7 +12,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QLayout, QPushButton, QVBoxLayout, QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
-from ..processing_provider.results.layer_tree import brought_to
+from ..processing_provider.results.road_maps import brought_to
 from ..processing_provider.texts import tr
 
 LAST_INPUT, LAST_OUTPUT = "/Processing/LastInputPath", "/Processing/LastOutputPath"  # QGIS's own settings

@@ -37,15 +37,14 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.algorithm import choice_refused, number_refused
 from ..algorithms.call import run
 from ..algorithms.catalogue import toolbox_number
-from ..algorithms.survey_files import trajectory_path
+from ..algorithms.survey_input import trajectory_path
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.parallel import lack_of_memory
 from ..core.io.local_files import offline
 from .call import FeedbackProgress, QgisCall, asks_servers, check_files
 from .dependencies import missing_packages
-from .results.road_maps import road_map_of
-from .results.runs import note_run
+from .results.road_maps import note_run, road_map_of
 from .texts import told, tr
 
 ICONS = Path(__file__).resolve().parents[1] / "resources" / "icons"
@@ -236,9 +235,9 @@ def accept_trajectory_file(declaration, parameters, context):
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
 CLOUD_FILTER = "Point clouds (*.las *.laz *.vpc *.LAS *.LAZ *.VPC);;All files (*.*)"
 # Found by name when a dialog is made, which happens in a window only
-DESKTOP = f"{__name__.split('.')[0]}.desktop"
-WIDGETS = {"clouds": "cloud_widget.PointCloudsWrapper", "trajectory": "trajectory_widget.TrajectoryWrapper",
-           "columns": "trajectory_widget.ColumnsWrapper", "choice": "dialog_wrapper.ChoiceWrapper"}  # choices in other languages than English
+WIDGETS_IN = f"{__name__.split('.')[0]}.desktop.survey_widgets"
+WIDGETS = {"clouds": "PointCloudsWrapper", "trajectory": "TrajectoryWrapper", "columns": "ColumnsWrapper",
+           "choice": "ChoiceWrapper"}  # choices in other languages than English
 FILE_FILTERS = {"cloud": "LAZ (*.laz);;LAS (*.las)", "report": "HTML (*.html)"}  # of results
 DECIMALS = 3  # millimetres; QGIS would show six
 
@@ -311,7 +310,7 @@ def qgis_parameter(spec):
     elif spec.kind == "number":
         parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})
     elif spec.kind in WIDGETS and (spec.kind != "choice" or any(tr(choice) != choice for choice in spec.choices)):
-        parameter.setMetadata({"widget_wrapper": {"class": f"{DESKTOP}.{WIDGETS[spec.kind]}"}})
+        parameter.setMetadata({"widget_wrapper": {"class": f"{WIDGETS_IN}.{WIDGETS[spec.kind]}"}})
     return parameter
 
 

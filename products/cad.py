@@ -18,7 +18,7 @@ from .export.opendrive.exporter import OpenDriveSettings, draft_opendrive
 from .export.opendrive.geometry import PlanElement, PlanView
 from .export.opendrive.reference_line import fit_reference
 from .export.sources import RoadMapSource, plan_length, without_repeats
-from .export.xml_tree import xml_text
+from .export.xml_tree import file_text
 from .inventory.cross_sections import RoadSections, exceeded
 from .surface.model import SurfaceModel
 
@@ -162,37 +162,13 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray
     """
     units = as_in_file(crs)[1]
     layers = sorted({line.layer for line in lines} | ({"SURFACE"} if faces is not None else set()))
+    text = file_text(
+        "dxf.txt", layers=[(_dxf_text(layer), next((colour for name, colour in COLOURS.items() if layer.startswith(name)), 9)) for layer in layers],
+        lines=((_dxf_text(line.layer), units.in_file(line.places).tolist(), line.closed, _dxf_text(line.text), line.turned) for line in lines),
+        faces=[] if faces is None else units.in_file(faces)[:, [0, 1, 2, 2]].tolist(),   # a triangle is a face whose last corner stands twice
+        letter=LETTER / units.across)
     with open(path, "w", encoding="cp1252", newline="\r\n") as file:
-        def put(*pairs):
-            file.write("".join(f"{code}\n{value}\n" for code, value in pairs))
-
-        put((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252"), (0, "ENDSEC"),
-            (0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, len(layers)))
-        for layer in layers:
-            colour = next((colour for name, colour in COLOURS.items() if layer.startswith(name)), 9)
-            put((0, "LAYER"), (2, _dxf_text(layer)), (70, 0), (62, colour), (6, "CONTINUOUS"))
-        put((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
-        for line in lines:
-            owner = 8, _dxf_text(line.layer)
-            places = [_dxf_place(place) for place in units.in_file(line.places)]
-            if line.text:
-                middle = [(code + 1, value) for code, value in places[0]]
-                put((0, "TEXT"), owner, *places[0], (40, f"{LETTER / units.across:.4f}"), (1, _dxf_text(line.text)),
-                    (50, f"{line.turned:g}"), (72, 1), *middle, (73, 2))
-            else:
-                put((0, "POLYLINE"), owner, (66, 1), (70, 9 if line.closed else 8), *_dxf_place((0, 0, 0)))
-                for place in places:
-                    put((0, "VERTEX"), owner, *place, (70, 32))
-                put((0, "SEQEND"), owner)
-        for corners in () if faces is None else units.in_file(faces):
-            # a triangle is a face whose last corner stands twice
-            put((0, "3DFACE"), (8, "SURFACE"), *(pair for k, corner in enumerate((*corners, corners[2])) for pair in _dxf_place(corner, k)))
-        put((0, "ENDSEC"), (0, "EOF"))
-
-
-def _dxf_place(place, corner=0):
-    """The pairs of a place: groups 10, 20 and 30, of the next corner of a face 11, 21 and 31."""
-    return [(10 * (axis + 1) + corner, f"{value:.5f}") for axis, value in enumerate(place)]
+        file.write(text)
 
 
 def _dxf_text(text):
@@ -219,7 +195,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
     unit = next((name for name, foot in FEET_IN_LANDXML.items() if abs(units.across / foot - 1) < IO.same_unit), "")
     if unit:
         crs, alignments = file_wkt, [alignment.in_file(units) for alignment in alignments]
-    return xml_text("landxml.xml", namespace=NAMESPACE, moment=moment, unit=unit, crs=horizontal_part(parse_crs(crs)), name=name,
+    return file_text("landxml.xml", namespace=NAMESPACE, moment=moment, unit=unit, crs=horizontal_part(parse_crs(crs)), name=name,
                     surface=_surface(surface, units.across if unit else 1.0) if surface is not None else None, alignments=alignments,
                     places_of=_places, elements_of=_elements)
 

@@ -152,7 +152,8 @@ class LineSpool:
         columns : by field name, (L,) values or one for all
         """
         if len(first) > 1:
-            self._file.write(_lines_as_wkb(coordinates, first).tobytes())
+            for line in np.split(np.asarray(coordinates, "<f8"), first[1:-1]):
+                self._file.write(np.array((1, WKB_TYPE, len(line)), WKB_HEADER).tobytes() + line.tobytes())
             rows = {name: np.broadcast_to(values, len(first) - 1) for name, values in columns.items()}
             self._chunks.append((np.diff(first), rows))
 
@@ -171,21 +172,6 @@ class LineSpool:
             names = list(columns)
             for first, end, values in zip([0, *ends], ends, zip(*(columns[name].tolist() for name in names))):
                 yield bytes(data[first:end]), dict(zip(names, values))
-
-
-def _lines_as_wkb(coordinates: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """(B,) uint8, the ISO WKB of L lines one after the other; parameters as of `LineSpool.add`."""
-    counts = np.diff(first)
-    headers = np.empty(len(counts), WKB_HEADER)
-    headers["order"], headers["type"], headers["count"] = 1, WKB_TYPE, counts
-    size = WKB_HEADER.itemsize
-    out = np.empty(size * len(counts) + 32 * len(coordinates), np.uint8)
-    in_header = np.zeros(len(out), bool)
-    begins = 32 * np.asarray(first[:-1]) + size * np.arange(len(counts))
-    in_header[(begins[:, None] + np.arange(size)).ravel()] = True
-    out[in_header] = headers.view(np.uint8)
-    out[~in_header] = np.ascontiguousarray(coordinates, "<f8").view(np.uint8).ravel()
-    return out
 
 
 def coordinates_of(wkb: bytes) -> np.ndarray:

@@ -41,7 +41,7 @@ def kinds(folder: Path) -> dict[str, Kind]:
 def _clouds(folder):
     import laspy
     from copc_files import write_copc, write_vpc
-    from lanewright.algorithms.survey_files import cloud_files
+    from lanewright.algorithms.survey_input import cloud_files
     from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
     from lanewright.core.survey.las.reader import read_blocks, read_header
     from pyproj import CRS

@@ -11,6 +11,7 @@ from pathlib import Path
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from legend_pictures import draw_all
+from palette import with_palette
 from plugin_package import ROOT, load
 
 PICTURES = ROOT / "docs" / "manual" / "img"
@@ -74,11 +75,25 @@ def stages(folder):
                                      OUTPUT=at("a_d.gpkg"))
     made["georeferenceimage"] = run("georeferenceimage", IMAGE=sample["UAV_IMAGE"], GCPS=sample["UAV_GCPS"], ORDER=2, OUTPUT=at("ortho.tif"),
                                     RESIDUALS=at("residuals.gpkg"))
+    made["paintcolours"] = run("paintcolours", **some_yellow(made["georeferenceimage"]["OUTPUT"], clusters["MARKINGS"], at("yellow.tif")),
+                               MARKINGS=clusters["MARKINGS"], MARKING_LINES=lines["MARKING_LINES"], COLOURED_MARKINGS=at("c_m.gpkg"),
+                               COLOURED_LINES=at("c_l.gpkg"))
     made["proposecontrolpoints"] = run("proposecontrolpoints", IMAGE=sample["UAV_IMAGE"], INTENSITY_IMAGE=image["INTENSITY_IMAGE"],
                                        CONTROL_POINTS=at("proposed.gpkg"))
+    made["paintcolours"]["ROAD_SURFACE"] = surface["ROAD_SURFACE"]
     made["image"] = image["INTENSITY_IMAGE"]
     made["street"] = dict(**survey, **made["roadmap"])
     return made
+
+
+def some_yellow(image, markings, path):
+    """The orthoimage with centre lines painted yellow, as roads with works have them; {name of the parameter: file}."""
+    from osgeo import gdal
+
+    gdal.Translate(path, image)
+    dataset = gdal.Open(path, gdal.GA_Update)
+    gdal.Rasterize(dataset, markings, layers=[Path(markings).stem], bands=[3], burnValues=[60], where="class IN ('centre', 'lane')")
+    return {"IMAGE": path}
 
 
 def clusters_of(results):
@@ -86,7 +101,7 @@ def clusters_of(results):
 
 
 # algorithm -> (outputs from above, with the style's output name where it is another; whether the image lies below; a detail?)
-PLANS = ("extractroadsurface", "roadmap")  # drawn as a road plan; over the image the colours by class are seen better
+PLANS = ("extractroadsurface", "roadmap", "paintcolours")  # drawn as a road plan; over the image the colours by class are seen better
 ON_WHITE = ("samplesurvey", "normalizedscanlines", "inspectsurvey", *PLANS)
 DRAWN = {
     "samplesurvey": (["TRUTH_DRIVING_LINES", "TRUTH_BOUNDARIES", "TRUTH_MARKINGS"], False, False),
@@ -105,6 +120,7 @@ DRAWN = {
     "removeoutliers": ([("OUTPUT", "cloud")], False, True),
     "clustermarkings": (["MARKINGS"], True, True),
     "fitmarkinglines": (["MARKING_LINES"], True, False),
+    "paintcolours": ([("COLOURED_LINES", "MARKING_LINES"), ("COLOURED_MARKINGS", "MARKINGS"), "ROAD_SURFACE"], False, True),
     "drivinglines": (["DRIVING_LINES"], True, False),
     "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS", "ROAD_SURFACE"], False, False),
     "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
@@ -175,7 +191,7 @@ def draw(layers, path, surface, detail, ground):
     """Render the layers along the road of the surface layer."""
     from qgis.core import QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsRectangle
     from qgis.PyQt.QtCore import QSize
-    from qgis.PyQt.QtGui import QColor, QImage
+    from qgis.PyQt.QtGui import QColor
 
     whole = QgsGeometry.collectGeometry([feature.geometry().convexHull() for feature in surface.getFeatures()])
     box, _, angle, length, width = whole.orientedMinimumBoundingBox()
@@ -198,7 +214,7 @@ def draw(layers, path, surface, detail, ground):
     image = job.renderedImage()
     colours = {image.pixel(x, y) for x in range(0, WIDTH, 7) for y in range(0, height, 7)}
     assert len(colours) >= 2, f"{path} shows nothing"
-    image.convertToFormat(QImage.Format.Format_Indexed8).save(str(path))
+    with_palette(image).save(str(path), quality=0)
 
 
 def main():

@@ -6,12 +6,12 @@ import tempfile
 import traceback
 from pathlib import Path
 
-from lanewright.processing_provider.results.runs import last_report
+from lanewright.processing_provider.results.road_maps import last_report
 from lanewright.processing_provider.texts import tr
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication
-from qgis.PyQt.QtWidgets import QDockWidget
+from qgis.PyQt.QtWidgets import QApplication, QDockWidget
 from qgis.utils import iface, plugins
 
 sys.path.insert(0, str(Path(os.environ["LANEWRIGHT_ROOT"]) / "tools"))
@@ -176,6 +176,21 @@ def corrections(dock):
     window.close()
 
 
+def view3d():
+    """The sample street in QGIS's 3D view, with the points about the place."""
+    from lanewright.desktop.view3d import TASKS
+
+    iface.mapCanvas().zoomScale(300)
+    action_of(tr("Road map in 3D")).trigger()
+    needed(wait(120, lambda: not TASKS), "the points of the 3D view took longer than 120 s")
+    view = next(window for window in QApplication.topLevelWidgets()
+                if any(child.metaObject().className() == "Qgs3DMapCanvasWidget" for child in window.children()))
+    view.setGeometry(0, 0, 1000, 620)
+    wait(30)  # the octree is read and drawn in the background, of which nothing tells when it is done
+    save(QGuiApplication.primaryScreen().grabWindow(view.winId()), "window_3d")
+    view.close()
+
+
 def pairs():
     """The UAV image of the sample survey and the intensity image of its road map: pairs of cut-outs, accepted and refused."""
     from lanewright.simulator.orthophoto import write_uav_image
@@ -232,7 +247,7 @@ def designer():
     window.close()
 
 
-STEPS = (menu, toolbox, dialog, columns, sample, doubts, pairs, manual, designer, web_map, own_survey, layout, orthoimage, database, batch)
+STEPS = (menu, toolbox, dialog, columns, sample, doubts, view3d, pairs, manual, designer, web_map, own_survey, layout, orthoimage, database, batch)
 
 
 def drive():

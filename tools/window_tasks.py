@@ -7,7 +7,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from lanewright.processing_provider.results.runs import run_table
+from lanewright.processing_provider.results.road_maps import run_table
 from lanewright.processing_provider.texts import tr
 from qgis import processing
 from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsSettings

@@ -12,6 +12,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ..lazy import shapely
+
 FEW = 500        # cost: numbers that numpy's lexsort takes less time for
 RADIX_BITS = 16  # derived: numpy sorts integers of up to 16 bits in linear time (radix sort)
 
@@ -135,43 +137,24 @@ def best_within(place: np.ndarray, row: np.ndarray, score: np.ndarray, span: int
     return best
 
 
-# Which of many stretches of a road meet: found in order of station, so that a long survey needs no table of all pairs.
+# Which of many stretches of a road meet.
 
-PAIRS_PER_BLOCK = 1 << 18  # cost: about so many are handed out at a time
 ROUNDING_TOLERANCE = 1e-6  # derived: m, more than coordinates are rounded by
 
 
 def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarray, other_last: np.ndarray,
-                      apart: float = 0.0) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield (P,) indices a, b of pairs of stretches that overlap, touch or lie no farther than `apart` metres from each other.
+                      apart: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) indices a, b of all pairs of stretches that overlap, touch or lie no farther than `apart` metres from each other, by a, then by b.
 
-    Every pair comes once, a stretch with itself too; some that lie a hair farther apart are among them.
+    A stretch is paired with itself too; some that lie a hair farther apart are among them. A tree finds them: a long survey needs no table of all.
 
     first, last : (N,) m, first <= last
     other_first, other_last : (M,) m, likewise
     """
     reach = apart + ROUNDING_TOLERANCE
-    order, other_order = np.argsort(first, kind="stable"), np.argsort(other_first, kind="stable")
-    begins, other_begins = first[order], other_first[other_order]
-    # of two that meet, one begins before the other has ended
-    ends = np.searchsorted(other_begins, last + reach, side="right")
-    for a, b in _ranges(np.searchsorted(other_begins, first, side="left"), ends):
-        yield a, other_order[b]
-    ends = np.searchsorted(begins, other_last + reach, side="right")
-    for b, a in _ranges(np.searchsorted(begins, other_first, side="right"), ends):
-        yield order[a], b
-
-
-def _ranges(starts, ends):
-    """Blocks of pairs of each number and all that lie in its range."""
-    count = np.maximum(ends - starts, 0)
-    total = np.cumsum(count)
-    cuts = np.unique(np.searchsorted(total, np.arange(PAIRS_PER_BLOCK, total[-1] if len(total) else 0, PAIRS_PER_BLOCK), side="left"))
-    for rows in np.split(np.arange(len(count)), cuts):
-        size = count[rows]
-        if size.any():
-            within = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
-            yield np.repeat(rows, size), np.repeat(starts[rows], size) + within
+    a, b = shapely.STRtree(shapely.box(other_first, 0.0, other_last, 1.0)).query(shapely.box(first - reach, 0.0, last + reach, 1.0))
+    order = np.lexsort((b, a))
+    return a[order], b[order]
 
 
 # Things of one kind as columns: dataclasses of arrays that have one entry for each of them.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from .setting import table
 
@@ -22,65 +22,60 @@ class PROGRESS:
 
 
 class Progress:
-    """Receives the progress of a computation. This base class ignores it.
+    """Receives the progress of a computation. This base class passes it on to that of the whole work, or ignores it where there is none.
 
     A user interface overrides the methods: it moves the bar, prints the messages and raises `Cancelled`.
     Every function of the core that may take longer than a second has `progress` as its last argument.
     """
+
+    whole: Progress | None = None
 
     def report(self, fraction: float) -> None:
         """Report the fraction of this computation that is done, 0 to 1.
 
         Raises Cancelled if the user cancelled. Call it at least once per section of road.
         """
+        if self.whole is not None:
+            self.whole.report(fraction)
 
     def check_cancelled(self) -> None:
         """Raise `Cancelled` if the user cancelled; the bar does not move."""
+        if self.whole is not None:
+            self.whole.check_cancelled()
 
     def info(self, text: str) -> None:
         """Log a result or a step in one line."""
+        if self.whole is not None:
+            self.whole.info(text)
 
     def warn(self, text: str) -> None:
         """Log a doubtful finding once, with its count."""
+        if self.whole is not None:
+            self.whole.warn(text)
+
+    def warn_all(self, texts: Iterable[str]) -> None:
+        """Log several of them."""
+        for text in texts:
+            self.warn(text)
 
     def part(self, start: float, end: float) -> Progress:
         """The progress of one part of the work, which runs from fraction `start` to `end` of the whole."""
         return _PartOfProgress(self, start, end)
 
 
-class _PassedOn(Progress):
-    """Passes everything on to the progress of the whole work."""
-
-    def __init__(self, whole: Progress):
-        self.whole = whole
-
-    def report(self, fraction: float) -> None:
-        self.whole.report(fraction)
-
-    def check_cancelled(self) -> None:
-        self.whole.check_cancelled()
-
-    def info(self, text: str) -> None:
-        self.whole.info(text)
-
-    def warn(self, text: str) -> None:
-        self.whole.warn(text)
-
-
-class _PartOfProgress(_PassedOn):
+class _PartOfProgress(Progress):
     def __init__(self, whole: Progress, start: float, end: float):
-        super().__init__(whole)
-        self.start, self.span = start, end - start
+        self.whole, self.start, self.span = whole, start, end - start
 
     def report(self, fraction: float) -> None:
-        self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
+        super().report(self.start + self.span * min(max(fraction, 0.0), 1.0))
 
 
-class RememberedMessages(_PassedOn):
+class RememberedMessages(Progress):
     """Passes everything on, and remembers the messages: a list of ("info" or "warn", text)."""
 
     def __init__(self, whole: Progress = Progress()):
-        super().__init__(whole)
+        self.whole = whole
         self.messages: list[tuple[str, str]] = []
 
     @property

@@ -15,8 +15,7 @@ from ..markings.cross_section.evidence import driven_offsets
 from ..markings.cross_section.roads import EstimatedRoad
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
-from ..survey.frame.passes import Pass
-from ..survey.frame.road_frame import RoadFrame
+from ..survey.frame.road_frame import Pass, RoadFrame
 from ..survey.weights import FRAME
 from .alignment import track_pieces
 from .lane_track import LANE_STATUS, LaneTrack, spans_of

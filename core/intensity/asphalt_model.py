@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.arrays import quantile_in_order
-from ..survey.frame.passes import Pass
+from ..survey.frame.road_frame import Pass
 from ..survey.store.records import COORDINATE_SCALE, Points
 from .weights import ASPHALT
 

@@ -16,8 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.phase import Phase
-from ..survey.frame.passes import Pass
-from ..survey.frame.road_frame import RoadFrame
+from ..survey.frame.road_frame import Pass, RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints

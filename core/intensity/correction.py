@@ -12,8 +12,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..execution.in_step import Asked, Work, in_step
-from ..survey.frame.passes import Pass
-from ..survey.frame.road_frame import RoadFrame
+from ..survey.frame.road_frame import Pass, RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import StoreIndex, Stretch

@@ -229,19 +229,15 @@ def place_on_ground(crs: Any, x: float, y: float) -> _MapPlace:
     Tissot's indicatrix (Snyder, 1987, Map Projections: A Working Manual, USGS Professional Paper 1395, p. 20-26). Heights, which shorten lengths
     on the map by 0.16 per mille a kilometre, are not counted.
     """
-    datum = crs.geodetic_crs
-    to_radians = datum.axis_info[0].unit_conversion_factor
     steps = IO.scale_step * np.array([(0, 0), (1, 0), (0, 1), (1, 1)])
-    u, v = (np.asarray(angle) * to_radians for angle in pyproj.Transformer.from_crs(crs, datum, always_xy=True).transform(*(steps + (x, y)).T))
+    u, v = pyproj.Proj(crs)(*(steps + (x, y)).T, inverse=True)
     if not np.isfinite([u, v]).all():
         return _MapPlace(np.nan, np.nan, np.nan)
-    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:], radians=True)[2]) / IO.scale_step
+    along_x, along_y, diagonal = np.array(crs.get_geod().inv(*([end[0]] * 3 for end in (u, v)), u[1:], v[1:])[2]) / IO.scale_step
     mixed = (diagonal**2 - along_x**2 - along_y**2) / 2
     ground = np.sqrt(np.linalg.eigvalsh([[along_x**2, mixed], [mixed, along_y**2]]).clip(1e-12))
     scale = max(1 / ground, key=lambda one: abs(np.log(one)))
-    meridian = datum.prime_meridian
-    longitude = np.degrees(u[0]) + meridian.longitude * np.degrees(meridian.unit_conversion_factor)
-    return _MapPlace(float((longitude + 180) % 360 - 180), float(np.degrees(v[0])), float(scale))
+    return _MapPlace(float((u[0] + 180) % 360 - 180), float(v[0]), float(scale))
 
 
 @lru_cache(maxsize=16)

@@ -22,9 +22,8 @@ from ..common.features import Features
 from ..common.layer_rows import LayerRows
 from ..common.parallel import trim_heap
 from ..common.progress import Progress
-from ..corrections.apply import correct_edges, correct_marking_lines, correct_markings
+from ..corrections.apply import correct_edges, correct_lanes, correct_marking_lines, correct_markings
 from ..corrections.corrections import Corrections, corrections_from_features
-from ..corrections.lanes import correct_lanes
 from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings

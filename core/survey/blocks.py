@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -102,8 +103,9 @@ class PointChoice:
 class _ChosenPoints:
     """What the points that are kept say of the survey."""
 
-    histogram: HeightHistogram   # histogram, coverage: of those on the vehicle's own track
+    histogram: HeightHistogram   # histogram, coverage, brightness: of those on the vehicle's own track
     coverage: _Coverage
+    brightness: _Brightness
     sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
@@ -124,7 +126,7 @@ class _BlockReader:
 
     def chosen(self, drop: float) -> _ChosenPoints:
         """No points yet, of a road that lies about `drop` metres below the trajectory."""
-        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), _Coverage(self.frame, drop))
+        return _ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop), _Coverage(self.frame, drop), _Brightness())
 
     def rough_drop(self, blocks: Iterable[Any], progress: Progress) -> float:
         """m from the trajectory down to the road, accurate to one or two decimetres, by the first blocks of which enough lies on the own track."""
@@ -149,9 +151,11 @@ class _BlockReader:
     def _partition(self, road, points, mask, chosen, store):
         if road < 0:
             return store.partition(road, points, mask)
-        for number, s, drops in self.tracks.drops(road, points, mask):
+        for number, rows, drops in self.tracks.drops(road, points, mask):
+            s = points["s"].take(rows)
             chosen.histogram.add(number, drops)
             chosen.coverage.add(number, s, drops)
+            chosen.brightness.add(number, s, points["intensity"].take(rows))
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
             rows = np.flatnonzero(kept if mask is None else kept & mask)
@@ -163,8 +167,8 @@ class _BlockReader:
         """Count the points of a road on the vehicle's own track, (N,) bool of all, that do not lie near its height."""
         rows = np.flatnonzero(far)
         if len(rows):
-            for number, s, drops in self.tracks.drops(road, points.take(rows)):
-                chosen.coverage.add(number, s, drops)
+            for number, on, drops in self.tracks.drops(road, points.take(rows)):
+                chosen.coverage.add(number, points["s"].take(rows.take(on)), drops)
 
     def _near_roads(self, block, summary, ground=None, chosen=None):
         """Yield the points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
@@ -317,7 +321,7 @@ class VehicleTracks:
             self._tracks[p.number] = first, to_units(offsets), to_units(heights)
 
     def drops(self, road: int, points: Columns, mask: np.ndarray | None = None) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
-        """Yield pass number, (M,) int32 stations and depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
+        """Yield pass number, (M,) rows and depths below the trajectory, units of 0.1 mm, of the points of a road on the pass's own track.
 
         mask : (N,) bool, points to use; all by default
         """
@@ -345,8 +349,9 @@ class VehicleTracks:
             on = np.flatnonzero(_between(off, -OWN_TRACK_HALF_WIDTH_UNITS, OWN_TRACK_HALF_WIDTH_UNITS))
             if len(on):
                 drops = heights.take(cell.take(on), mode="clip")
-                drops -= points["z"].take(rows.take(on))
-                yield p.number, along.take(rows.take(on)), drops
+                rows = rows.take(on)
+                drops -= points["z"].take(rows)
+                yield p.number, rows, drops
 
 
 def _between(values, least, most):
@@ -501,6 +506,54 @@ class _Coverage:
         return np.where(counts[:, :-1].sum(axis=1) > READING.min_track_points, level, np.nan)
 
 
+class _Brightness:
+    """Counts of the brightness of the road under the vehicle by file, pass and cell of station, whatever the order of adding."""
+
+    def __init__(self) -> None:
+        self.file = 0   # number of the file that points are added from
+        self.counts: dict[tuple[int, int], dict[int, np.ndarray]] = {}   # {(pass, file): {cell: counts by step of brightness}}
+
+    def add(self, number: int, s: np.ndarray, intensity: np.ndarray) -> None:
+        """Count points of a pass: (N,) int32 stations, units of 0.1 mm, and intensities."""
+        cells, cell = np.unique(s >> READING.brightness_cell_bits, return_inverse=True)
+        bins = 16 * READING.brightness_steps
+        k = (np.log2(np.maximum(intensity, 1)) * READING.brightness_steps).astype(int)
+        rows = np.bincount(cell * bins + k, minlength=len(cells) * bins).reshape(-1, bins)
+        self.join({(number, self.file): dict(zip(cells.tolist(), rows))})
+
+    def join(self, counts: dict[tuple[int, int], dict[int, np.ndarray]]) -> None:
+        """Add the counts of other points."""
+        for key, rows in counts.items():
+            of_key = self.counts.setdefault(key, {})
+            for cell, row in rows.items():
+                of_key[cell] = of_key.get(cell, 0) + row
+
+    def warning(self, files: Sequence[CloudHeader]) -> str:
+        """What to tell of files along one drive of which one goes on where the other ends, the same road with another brightness; "" for nothing."""
+        steps: dict[tuple[int, int], list[float]] = {}
+        for number in {number for number, _ in self.counts}:
+            levels = {file: self._levels(rows) for (one, file), rows in self.counts.items() if one == number}
+            for before, after in combinations(sorted(levels), 2):
+                here, there = levels[before], levels[after]
+                # those that measure together, as two scanners, may differ
+                if 2 * len(here.keys() & there.keys()) <= min(len(here), len(there)):
+                    steps.setdefault((before, after), []).extend(
+                        there[cell + by] - here[cell] for cell in here for by in (-1, 0, 1) if cell + by in there)
+        steps = {pair: values for pair, values in steps.items() if values and np.ptp(values) < READING.least_brightness_step}
+        (before, after), octaves = max(((pair, float(np.median(values))) for pair, values in steps.items()), key=lambda step: abs(step[1]),
+                                       default=((0, 0), 0.0))
+        if abs(octaves) < READING.least_brightness_step:
+            return ""
+        dark, bright = (before, after) if octaves > 0 else (after, before)
+        return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {files[bright].path} than in {files[dark].path}, though one goes on "
+                "from the other. Paint may be missed in either: export both with one scale of intensities.")
+
+    def _levels(self, rows):
+        """{cell: octaves of the median brightness} of cells that have enough points."""
+        summed = {cell: np.cumsum(row) for cell, row in rows.items() if row.sum() > READING.min_track_points}
+        return {cell: float(np.interp(row[-1] / 2, row, np.arange(1, len(row) + 1))) / READING.brightness_steps for cell, row in summed.items()}
+
+
 def _runs(chosen: np.ndarray, first: int, least: float) -> Iterator[tuple[int, int]]:
     """(first, last + 1) of the runs of (C,) chosen cells that are longer than so many metres; `first` is the number of the first cell."""
     return ((first + a, first + b) for a, b in mask_runs(chosen) if np.subtract(*_stations(b, a)) > least)
@@ -531,6 +584,7 @@ class _PointsRead:
     heights: dict[int, float]   # {pass number: metres from the trajectory down to the road}
     moved: str   # moved, holes: as of `_Coverage.warnings`
     holes: str
+    scales: str   # as of `_Brightness.warning`
 
 
 def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, choice: PointChoice, block: int, executor: Executor,
@@ -551,9 +605,11 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
         summary.join(part.summary)
         chosen.histogram.join(part.drops)
         chosen.coverage.join(part.coverage)
+        chosen.brightness.join(part.brightness)
         sampled.append((part.times, part.places))
         store.adopt(part.index, store.folder)
-    return _PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings())
+    return _PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings(),
+                       chosen.brightness.warning(files))
 
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
@@ -567,6 +623,7 @@ class _PartOfFiles:
     summary: _BlockSummary
     drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
     coverage: list[CountedCells]   # of its _Coverage
+    brightness: dict[tuple[int, int], dict[int, np.ndarray]]   # counts of its _Brightness
     times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
@@ -611,22 +668,25 @@ def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
     chosen, summary = source.reader.chosen(source.drop), _BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
+            chosen.brightness.file = number
             for points in source.clouds.points(source.files[number], first, count, source.block):
                 check_cancelled()
                 for part in source.reader.read(points, summary, source.ground, chosen, store):
                     store.add(part)
     index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), *(np.concatenate(column) for column in sampled))
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), chosen.brightness.counts,
+                        *(np.concatenate(column) for column in sampled))
 
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
-    summary = _BlockSummary()
+    summary, brightness = _BlockSummary(), _Brightness()
     drops: dict[int, np.ndarray] = {}
     for part in parts:
         summary.join(part.summary)
+        brightness.join(part.brightness)
         drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
     coverage = [cells for part in parts for cells in part.coverage]
-    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage,
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage, brightness.counts,
                         *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))

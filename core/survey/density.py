@@ -10,7 +10,6 @@ import numpy as np
 from .store.records import Points
 
 CUBE_SIDE = 10_000       # derived: units of 0.1 mm: 1 m
-POINTS_PER_CHUNK = 1 << 15   # cost: points counted at a time: fits the processor cache
 
 CountedCubes = tuple[np.ndarray, np.ndarray] | None   # keys of the occupied cubes, and how many points they hold; None without points
 
@@ -40,25 +39,11 @@ def counted_cubes(points: Points) -> CountedCubes:
     """Points in cubes aligned with the local coordinates."""
     if not len(points):
         return None
-    low, size = [], []
-    for axis in (points.records[name] for name in "xyz"):
-        low.append(int(axis.min()) // CUBE_SIDE)
-        size.append(int(axis.max()) // CUBE_SIDE - low[-1] + 1)
-    counts = np.zeros(size[0] * size[1] * size[2], np.int64)
-    for first in range(0, len(points), POINTS_PER_CHUNK):
-        x, y, z = (points.records[name][first:first + POINTS_PER_CHUNK] // np.int32(CUBE_SIDE) - np.int32(least) for name, least in zip("xyz", low))
-        z *= np.int32(size[1])
-        z += y
-        z *= np.int32(size[0])
-        z += x
-        chunk = np.bincount(z)
-        counts[:len(chunk)] += chunk
-    return _occupied(counts, low, size)
-
-
-def _occupied(count, low, size):
-    """Keys of the cubes that hold points, and how many these are."""
+    cubes = [points.records[name] // np.int32(CUBE_SIDE) for name in "zyx"]
+    low = [int(cube.min()) for cube in cubes]
+    shape = [int(cube.max()) - least + 1 for cube, least in zip(cubes, low)]
+    count = np.bincount(np.ravel_multi_index([cube - least for cube, least in zip(cubes, low)], shape))
     held = np.flatnonzero(count)
-    x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
+    z, y, x = (cube + least for cube, least in zip(np.unravel_index(held, shape), low))
     half = 2**22   # 4,000 km either side, and 32 km up or down
     return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]

@@ -22,8 +22,7 @@ from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, read_files
-from .frame.passes import decimate_by_distance
-from .frame.road_frame import RoadFrame, build_frame
+from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
@@ -163,7 +162,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
     if time_note:
-        progress.info(time_note)
+        (progress.warn if len({file.has_time for file in files}) > 1 else progress.info)(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, time_note, progress)
     samples = sample_files(files)
@@ -188,10 +187,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         shared.ordered.mkdir(exist_ok=True)
         survey.executor = shared.ordering
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
-    mounted = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
+    left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
-    _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), mounted))
+    _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), left))
     if shared is not None:
         survey.keep(shared.ordered)
     return survey
@@ -222,15 +221,14 @@ def _say_brightness(survey, intensity, settings, samples, progress):
 
 
 def _lay_scanners_and_passes(survey, again, feet, progress):
-    """Lay scanners on each other and, where they drive `again`, passes; m that the mounting of scanners leaves open across."""
-    mounted = 0.0
+    """Lay scanners on each other and, where they drive `again`, passes; m that clocks and the mounting of scanners leave open."""
+    left = 0.0
     if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
-        _check_clock(survey, progress)
         read_at = READING.read_progress if again else 1.0
-        mounted = lay_scanners(survey, progress.part(read_at, read_at))
+        left = max(_check_clock(survey, progress), lay_scanners(survey, progress.part(read_at, read_at)))
     if again:
         adjust_passes(survey, progress.part(READING.read_progress, 1.0))
-    return mounted
+    return left
 
 
 def _widen_sigma(frame, across):
@@ -277,7 +275,7 @@ def _say_left_out(files, frame, read, settings, progress):
     if left.without_time:
         progress.warn(f"{left.without_time:,} of {total:,} points were left out: the trajectory, which runs {_said_of_times(frame)}, has no position "
                       "at their gps_time. Give the whole trajectory.")
-    for doubt in filter(None, (read.moved, read.holes)):
+    for doubt in filter(None, (read.moved, read.holes, read.scales)):
         progress.warn(doubt)
 
 
@@ -327,8 +325,8 @@ def _sampled(survey, read, progress):
 
 def _tell_scanners_apart(survey, read, progress):
     """Where the points of one scanner, as it seems, are those of several by their scan lines, let the survey distinguish them."""
+    from .estimation.adjustment import told_apart
     from .estimation.estimate import splitter_of
-    from .estimation.interleaved import told_apart
     from .estimation.samples import samples_of
 
     if not survey.has_time:
@@ -354,7 +352,9 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
-        return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
+        missing = [file.path for file in files if not file.has_time]
+        which = "The point cloud has" if len(missing) == len(files) else f"{len(missing)} of {len(files)} files, such as {missing[0]}, have"
+        return trajectory, f"{which} no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
     with ParallelCloudReader(("gps_time",)) as readers:   # a few points of every file that has any, its last ones among them
         sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
     times = np.concatenate([time for _, time in sampled])
@@ -473,28 +473,37 @@ def _no_overlap(files, frame, read, corridor):
 # Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
 
 
-def _check_clock(survey: Survey, progress: Progress = Progress()) -> None:
-    """Warn if points were measured at times at which the vehicle was elsewhere."""
-    ahead, speed = _look_ahead(survey)
-    if len(ahead) < READING.min_clock_points or np.percentile(np.abs(ahead), READING.nearest_percentile) < READING.max_look_ahead:
-        return
-    distance, fast = float(np.median(ahead)), float(np.median(speed))
+def _check_clock(survey: Survey, progress: Progress = Progress()) -> float:
+    """Warn if points were measured at times at which the vehicle was elsewhere; m along the road that they fit worst by in any pass, else 0."""
+    number, ahead, speed = _look_ahead(survey)
+    off = {}
+    for one in np.unique(number).astype(int).tolist():
+        metres = ahead[number == one]
+        if len(metres) >= READING.min_clock_points and np.percentile(np.abs(metres), READING.nearest_percentile) >= READING.max_look_ahead:
+            off[one] = float(np.median(metres))
+    if not off:
+        return 0.0
+    worst = max(off, key=lambda one: abs(off[one]))
+    distance, fast = off[worst], float(np.median(speed[number == worst]))
     seconds = f", about {abs(distance) / fast:.1f} s at its speed" if fast > 1.0 else ""
-    progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned {abs(distance):.0f} m "
-                  f"{'before' if distance > 0 else 'past'} that place{seconds}. Check that both are of one drive and count time alike.")
+    drives = "" if len(off) == len(survey.frame.passes) else f" of {len(off)} of {len(survey.frame.passes)} passes"
+    progress.warn(f"The times of the points{drives} do not seem to fit the trajectory: the road on the vehicle's own way was scanned "
+                  f"{abs(distance):.0f} m {'before' if distance > 0 else 'past'} that place{seconds}. Check that both are of one drive and count "
+                  "time alike.")
+    return abs(distance)
 
 
 def _look_ahead(survey):
-    """Of sampled points on the own track: metres ahead of the vehicle when measured, and its speed then (m/s)."""
+    """Of sampled points on the own track: number of the pass, metres ahead of the vehicle when measured, and its speed then (m/s)."""
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
     # most of the time goes into putting the points of these sections in order
-    return np.concatenate([np.empty((2, 0)), *ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled)], axis=1)
+    return np.concatenate([np.empty((3, 0)), *ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled)], axis=1)
 
 
 def _look_ahead_in_section(survey, key):
-    """The same of one section, (2, N)."""
-    points, parts = survey.section(*key), [np.empty((2, 0))]
+    """The same of one section, (3, N)."""
+    points, parts = survey.section(*key), [np.empty((3, 0))]
     if len(points) > READING.clock_points_per_section:
         points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
     s, d, time, owner = points.s, points.d, points.time, points.pass_number
@@ -503,5 +512,5 @@ def _look_ahead_in_section(survey, key):
         on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
         rows = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
         now, soon = (p.station_at(time[rows] + wait) for wait in (0.0, 0.5))
-        parts.append(np.stack([p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)]))
+        parts.append(np.stack([np.full(len(rows), number), p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)]))
     return np.concatenate(parts, axis=1)

@@ -16,6 +16,7 @@ from ..io.crs import as_in_file, parse_crs
 from ..io.local_files import unfinished_path
 from ..lazy import laspy
 from .adjustment.register import PassCorrections, sigma_of_records, sigma_to_record
+from .las.copc_writer import write_copc
 from .las.point_fields import packed_returns
 from .las.reader import cloud_crs, open_cloud, read_blocks
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
@@ -56,24 +57,36 @@ def metres_of_file(header: Any, crs: str) -> list[float]:
     return (header.scales if units.metric else units.in_metres(header.scales)).tolist()
 
 
+def is_copc(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is that of a COPC, by its ending."""
+    return str(path).lower().endswith(".copc.laz")
+
+
 @contextmanager
 def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
     """A laspy writer of a new file, which appears at its path only when all is written; compressed unless the path ends in .las.
 
+    At a path that ends in .copc.laz a COPC appears, for which all points lie in a LAS file beside it until they are in order.
     RoadExtractionError if the file cannot be written.
     """
-    suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
+    octree = is_copc(path)
+    suffix = ".las" if octree or str(path).lower().endswith(".las") else ".laz"
     unfinished = unfinished_path(path, suffix)
+    ordered = unfinished_path(path, ".laz") if octree else unfinished
     try:
         # A file that laspy opened itself would stay open when its last points cannot be written.
         with open(unfinished, "wb") as stream, laspy.open(
                 stream, mode="w", header=header, do_compress=suffix == ".laz", closefd=False) as writer:
             yield writer
-        os.replace(unfinished, path)
+        if octree:
+            with laspy.mmap(unfinished) as cloud:
+                write_copc(cloud, ordered)
+        os.replace(ordered, path)
     except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
         raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free some disk space.") from problem
     finally:
         unfinished.unlink(missing_ok=True)
+        ordered.unlink(missing_ok=True)
 
 
 # Road points as a LAZ file, with the road frame in extra fields for the later stages.

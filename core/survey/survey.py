@@ -13,7 +13,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Phase, Recipe, read_plain, write_plain
 from .adjustment.register import PassCorrections
-from .estimation.interleaved import ScannerSplitter
+from .estimation.adjustment import ScannerSplitter
 from .frame.road_frame import RoadFrame
 from .las.point_fields import INTENSITY_SOURCES, numbers_by_value
 from .las.reader import CloudHeader

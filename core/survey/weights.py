@@ -57,6 +57,7 @@ class REGISTER:
     lag_cell: float = 0.02   # m: cell size along an offset, and across it
     row_cell: float = 0.25   # m: cell size along an offset, and across it
     max_offset: float = 0.30   # m between two passes
+    most_drift: float = 0.15   # m that navigation drifts from one drive to the next; more is another datum or another adjustment
     max_rough_offset: float = 1.5   # m between two drives of different years or datums
     min_compared: float = 0.3   # of the windows that show an offset across, or the passes seem to lie farther apart
     rough_groups: int = 5   # groups along a road, and windows of each, that are searched then
@@ -226,6 +227,9 @@ class READING:
     least_moved: float = 10.0   # m of such a road: longer than a car that stands behind
     least_hole: float = 5.0   # m without a point under the vehicle: longer than a puddle
     told_stretches: int = 4   # stretches that a warning names
+    brightness_cell_bits: int = 16   # of a station in units of 0.1 mm: the brightness of the road is compared over cells of 6.6 m,
+    brightness_steps: int = 4   # in steps of an octave, so many
+    least_brightness_step: float = 0.68   # octaves, a factor of 1.6, by which two files' asphalt differs: tyres and patches differ by less
     track_cell_bits: int = 8   # of a station in units of 0.1 mm: a track is looked up every 26 mm
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
     max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known
@@ -285,6 +289,9 @@ class TRAJECTORY:
     noise_time: float = 1.0   # s over which a cubic tells the noise
     smooth_time: float = 2.0   # s over which a cubic removes the noise
     even_steps: float = 0.2   # share by which steps of time may differ
+    least_jump: float = 0.05   # m across from one row to the next that no vehicle moves,
+    jump_acceleration: float = 50.0   # m/s², if it takes more than that: no vehicle reaches it, wheels in potholes do
+    jump_noise: float = 5.0   # times the noise of the positions
     vehicle_jerk: float = 10.0   # m/s³, as of somebody who brakes or steers hard
     max_sample_rows: int = 20_000   # rows from which the columns are recognised
     max_lean: float = 20.0   # degrees: no vehicle on a road rolls or pitches by more
@@ -504,7 +511,8 @@ class VEHICLE:
     attitude_noise: float = 0.01   # radians that roll, pitch and heading may be off, or differ from those of the way driven
     max_upright: float = 0.8   # of the plane's normal; what lies flatter is the ground
     one_move: float = 0.20   # m that one move may leave, as navigation drifts; more is the error of a drive by itself
-    least_jump: float = 0.5   # m from one place of a drive to the next: the way driven tells the heading of a vehicle so well in tight bends
+    course_noise: float = 0.15   # radians that the way driven may be off in tight bends, where it alone tells the attitude
+    least_jump: float = 0.06   # m from one place of a drive to the next that scanners cannot have moved on their vehicle
     largest_lag: float = 0.5   # s by which a clock may lag: more is told of by itself
     moved_share: float = 0.9   # of the windows, in which no more may be left
     clearly_better: float = 0.5   # of what one move leaves, below which another is taken

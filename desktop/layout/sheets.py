@@ -33,10 +33,10 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QMarginsF, QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QPageLayout, QPageSize, QPainter, QPdfWriter
 
+from ...algorithms.algorithm import MAP_LAYERS
 from ...algorithms.export import DRAWN, SheetSettings
-from ...algorithms.map_layers import MAP_LAYERS
 from ...algorithms.provenance import own_version
-from ...algorithms.survey_files import survey_name
+from ...algorithms.survey_input import survey_name
 from ...core.common.arrays import round_step
 from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
@@ -46,8 +46,22 @@ from ...processing_provider.results.road_maps import CLOUDS, origin_of, road_map
 from ...processing_provider.styling import LOOKS, STYLES, apply_style
 from ...processing_provider.texts import speak, tr
 from .axes import MapLine, Sheet, accuracy_of, axes_of, lines_of, road_lines, sheets_along
-from .charts import COLOURS, profile_pages, section_pages
-from .drawing import DARK, GREY, LETTER, Drawing, add_legend, as_it_stands, classes_by_layer, legend_height, station_text, text_format, text_width
+from .drawing import (
+    COLOURS,
+    DARK,
+    GREY,
+    LETTER,
+    Drawing,
+    add_legend,
+    as_it_stands,
+    classes_by_layer,
+    legend_height,
+    profile_pages,
+    section_pages,
+    station_text,
+    text_format,
+    text_width,
+)
 
 PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}  # mm, ISO 216
 SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
@@ -67,6 +81,7 @@ NOTES = 9.0           # mm for the notes below profiles and sections
 ABOVE = 18.0          # mm above the title block for scale and arrow, where the legend takes their place
 GRID = 60.0           # mm between lines of the grid at least
 TICKS, LABELS = 5.0, 25.0   # mm between ticks and labels of stations at least
+AXIS = "#b00020"
 ROWS = (0.28, 0.18, 0.18, 0.18, 0.18)   # of the title block's height
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
 
@@ -177,7 +192,7 @@ class _Pages:
         profiles = profile_pages(self.axes, *size, self.scale, len(self.sheets)) if self.choice.profile else []
         self._report()
         sections = section_pages(self.axes, self.lines, ground, interval, *size) if interval else []
-        drawings = [(tr("Longitudinal profile"), profiles, [(tr("Ground along the axis"), "#b00020"), (heights, "")]),
+        drawings = [(tr("Longitudinal profile"), profiles, [(tr("Ground along the axis"), AXIS), (heights, "")]),
                     (tr("Cross-sections"), sections,
                      [(tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
                       (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK),
@@ -258,6 +273,7 @@ class _Pages:
         if self.legend_on_sheets:
             add_legend(self.layout, self.classes, self._legend_room(frame), page)
         self._add_scale_and_north(chart, page, frame, self.scale, frame.band)
+        self._explain(paper)
         self._add_drawing(over, page, frame.map.x(), frame.map.y())
         self._add_drawing(paper, page)
 
@@ -355,6 +371,17 @@ class _Pages:
         width, height = bar.rect().width(), bar.rect().height()
         self._place(bar, page, *((x + 21 - width / 2, top + band - height - 3) if aside else (x + 45, top + 4)))
 
+    def _explain(self, paper):
+        """What the red line and the figures on the map say, between arrow and scale."""
+        x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 8
+        paper.line([(x, y), (x + 8, y)], AXIS, 0.25, "5 1 0.6 1")
+        figures = (("", tr("Axis with stations"), math.inf), ("R 85", tr("Radius (m)"), 1500), ("3.40", tr("Width of the lane (m)"), 750),
+                   ("12 cm", tr("Height of the curb"), 400))   # each with the smallest scale at which the styles write it
+        rows = [(figure, text) for figure, text, least in figures if self.scale <= least]
+        for row, (figure, text) in enumerate(rows):
+            paper.text(x, y + 3.2 * row, figure, 5.5, "start")
+            paper.text(x + 10, y + 3.2 * row, text, 5.5, "start")
+
     def _add_title_block(self, paper, page, frame, contents, number, scale, band=None):
         """Who made what, when, where and how well; captions are drawn, what was chosen stands in labels that can be changed."""
         self._report()
@@ -390,7 +417,7 @@ class _Pages:
         for sheet in self.sheets:
             corners = view.on_page(np.array(sheet.outline().exterior.coords[:4])) / per_mm
             chosen = current is not None and sheet.number == current.number
-            drawing.line(corners, "#b00020" if chosen else DARK, 0.4 if chosen else 0.2, fill="#b0002030" if chosen else "none", closed=True)
+            drawing.line(corners, AXIS if chosen else DARK, 0.4 if chosen else 0.2, fill="#b0002030" if chosen else "none", closed=True)
         for sheet in sorted(self.sheets, key=lambda one: current is not None and one.number != current.number):
             x, y = view.on_page(np.array([[sheet.x, sheet.y]]))[0] / per_mm
             drawing.text(x, y, str(sheet.number), size, boxed=True, yields=True)
@@ -465,7 +492,7 @@ class _Pages:
         for axis in self.axes:
             course = shapely.clip_by_rect(shapely.LineString(sheet.on_page(axis.places) / per_mm), 0, 0, drawing.width, drawing.height)
             for part in shapely.get_parts(course):
-                drawing.line(shapely.get_coordinates(part), "#b00020", 0.15, "5 1 0.6 1")
+                drawing.line(shapely.get_coordinates(part), AXIS, 0.15, "5 1 0.6 1")
             for station in np.arange(math.ceil(axis.stations[0] / ticks) * ticks, axis.stations[-1] + 1e-6, ticks):
                 self._draw_station(drawing, sheet, axis, float(station), abs(station / labels - round(station / labels)) < 1e-6)
 
@@ -477,7 +504,7 @@ class _Pages:
         if not (0 < x < drawing.width and 0 < y < drawing.height):
             return
         reach = (1.6 if labelled else 0.8) * per_mm
-        drawing.line(sheet.on_page(place + np.outer([-reach, reach], left)) / per_mm, "#b00020", 0.25)
+        drawing.line(sheet.on_page(place + np.outer([-reach, reach], left)) / per_mm, AXIS, 0.25)
         if not labelled:
             return
         text = station_text(station)
@@ -488,8 +515,8 @@ class _Pages:
             turned = math.degrees(math.atan2(way[1], way[0]))
             upright = (turned + 135) % 180 - 135   # read from below or from the right
             middle = leader[1] + way / max(np.hypot(*way), 1e-9) * (text_width(text, 7.0) / 2 + 1)
-            if drawing.text(*middle, text, 7.0, turned=upright, colour="#b00020", boxed=True, yields=True):
-                drawing.line(leader, "#b00020", 0.25)
+            if drawing.text(*middle, text, 7.0, turned=upright, colour=AXIS, boxed=True, yields=True):
+                drawing.line(leader, AXIS, 0.25)
                 return
 
     def _draw_grid(self, paper, sheet, frame, scale):

@@ -80,7 +80,7 @@ class PairsDialog(QDialog):
         form = QFormLayout(rowWrapPolicy=QFormLayout.RowWrapPolicy.WrapAllRows)
         form.addRow(tr("Intensity image"), self.intensity)
         form.addRow(tr("Pixel size of the image on the ground"), self.size)
-        files = row(button(tr("Add images…"), lambda: self.add(self.ask_for_images())), button(tr("Remove"), self._remove))
+        files = row(button(tr("Add images…"), self.ask_for_images), button(tr("Remove"), self._remove))
         left = column(QWidget(), QLabel(tr("Images")), (self.list, 1), files, form, row(self.rough_button, self.propose_button), rim=0)
         self.pairs = QListWidget(
             viewMode=QListView.ViewMode.IconMode, resizeMode=QListView.ResizeMode.Adjust, movement=QListView.Movement.Static, spacing=6,
@@ -111,9 +111,8 @@ class PairsDialog(QDialog):
 
     # -- images -----------------------------------------------------------------------------------
 
-    def ask_for_images(self) -> list[str]:
-        """The files that the user chooses."""
-        return QFileDialog.getOpenFileNames(self, tr("Images of a flight"), "", f"{tr('Images')} ({IMAGES});;{tr('All files')} (*.*)")[0]
+    def ask_for_images(self) -> None:
+        self.add(QFileDialog.getOpenFileNames(self, tr("Images of a flight"), "", f"{tr('Images')} ({IMAGES});;{tr('All files')} (*.*)")[0])
 
     def add(self, paths: list[str]) -> None:
         """Add images to the list."""

@@ -22,11 +22,9 @@ from qgis.core import (
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CORRECTIONS, OTHER
-from ...processing_provider.layers import qgis_fields
-from ...processing_provider.results.attributes import explain_readings
-from ...processing_provider.results.layer_tree import brought_to
-from ...processing_provider.results.road_maps import OUTPUT, RoadMap
-from ...processing_provider.styling import STYLES, apply_style
+from ...processing_provider.call import qgis_fields
+from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to
+from ...processing_provider.styling import STYLES, apply_style, explain_readings
 from ...processing_provider.texts import tr
 from .doubtful import DoubtfulPiece
 
@@ -85,7 +83,7 @@ def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateRefe
     layer.setCustomProperty(OUTPUT, NAME)
     layer.setCustomProperty(SURVEY, survey)
     project.addMapLayer(layer, False)
-    project.layerTreeRoot().insertLayer(0, layer)
+    project.layerTreeRoot().insertLayer(0, layer).setExpanded(False)
     return layer
 
 

@@ -28,8 +28,8 @@ from qgis.PyQt.QtWidgets import (
 
 from ...core.common.errors import RoadExtractionError
 from ...core.corrections.corrections import taken_reading
-from ...processing_provider.results.attributes import WORDS
 from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
+from ...processing_provider.styling import WORDS
 from ...processing_provider.texts import tr
 from ..widgets import button, choices, column, give_map_back, row, say, show_extent, take_map, wrapped
 from .corrections_layer import add_correction, corrections_of, corrections_of_survey, lay_above, new_corrections_layer, take_back
@@ -269,7 +269,8 @@ class DoubtDock(QDockWidget):
         """Look up what was decided, of all places at once: the corrections are many, and so are the pieces."""
         pieces = [piece for place in self.places for piece in place.pieces]
         made = corrections_of(self.layer, pieces, self.places[0].crs) if pieces else {}
-        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in self._seen()}
+        seen = self._seen() if pieces else []
+        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in seen}
         self.decided |= {id(pieces[number]): str(WORDS["action"].get(row["action"], row["action"])) for number, row in made.items()}
 
     def _decision(self, piece):

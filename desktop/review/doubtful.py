@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from qgis.core import NULL, Qgis, QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsLineString, QgsMapLayer, QgsPointXY, QgsRectangle
+from qgis.core import NULL, Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsLineString, QgsPointXY, QgsRectangle
 
 from ...core.common.texts import places_in
-from ...processing_provider.results.attributes import WORDS, second_reading
 from ...processing_provider.results.road_maps import RoadMap
+from ...processing_provider.styling import WORDS, second_reading
 from ...processing_provider.texts import told, tr
-from .section import title_of
+from .section import titles_of
 
 TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
 GUESSED = ("bridged", "inferred")
@@ -48,7 +48,8 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     lanes = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
     if road_map.layer("DRIVING_LINES") is None or not lanes:
         pieces += _doubtful_rows(road_map, "LANES")
-    for extra in (missing_edges(road_map), grown_surface(road_map), lane_ends(road_map), warned_places(road_map)):
+    rows = {output: _rows(road_map.layer(output)) for output in (*ALONG, "ROAD_SURFACE", "LANES")}
+    for extra in (_missing_edges(rows), _grown_surface(rows), _lane_ends(rows), _warned_places(rows, road_map.provenance.warnings)):
         pieces += extra
     kept_kinds = set(kinds)
     crs = road_map.vectors[0].crs()
@@ -59,7 +60,7 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
 def _doubtful_rows(road_map, output):
     layer = road_map.layer(output)
     names = [] if layer is None else [field.name() for field in layer.fields()]
-    result = []
+    title, result = None if layer is None else titles_of(layer), []
     for feature in layer.getFeatures() if {"station_m", "road"} <= set(names) else ():
         row = dict(zip(names, feature.attributes()))
         why, share = reason(row)
@@ -68,7 +69,7 @@ def _doubtful_rows(road_map, output):
             reading = str(row.get("other") or "")
             if reading:
                 why += tr("; almost as likely: {reading}").format(reading=second_reading(reading))
-            result.append(DoubtfulPiece(f"{title_of(layer, feature)}: {why}", target, course_of(feature.geometry()),
+            result.append(DoubtfulPiece(f"{title(feature)}: {why}", target, course_of(feature.geometry()),
                                         int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
                                         (_number(row.get("length_m")) or 0.0) * share, target, _number(row.get("offset_m")), reading))
     return result
@@ -161,95 +162,96 @@ class DoubtfulPiece:
         return f"{self.kind} {self.road} {self.station:.1f} {'' if self.offset is None else f'{self.offset:.1f}'}"
 
 
-def missing_edges(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
+def _missing_edges(rows):
     """Stretches along which one side of a road has no edge."""
     covered = defaultdict(list)
-    for feature, road, start, end in _rows(road_map.layer("ROAD_EDGES"), "side"):
-        if feature.attributeMap().get("kind") != "island":
-            covered[road, feature["side"]].append((start, end))
-    for road, (start, end) in sorted(_roads(road_map).items()):
+    for fields, _, road, start, end in rows["ROAD_EDGES"]:
+        if "side" in fields and fields.get("kind") != "island":
+            covered[road, fields["side"]].append((start, end))
+    for road, (start, end) in sorted(_roads(rows).items()):
         for side in ("left", "right") if covered else ():
             for first, last in _uncovered(covered[road, side], start, end):
-                line = along(road_map, road, first, last) if last - first >= LEAST_GAP else None
+                line = _along(rows, road, first, last) if last - first >= LEAST_GAP else None
                 if line is not None:
                     text = tr("No road edge on the {side} for {length:.0f} m").format(side=WORDS["side"][side], length=last - first)
                     yield DoubtfulPiece(text, "edge", line, road, first, LIKELY_WRONG["gap"] * (last - first))
 
 
-def grown_surface(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
+def _grown_surface(rows):
     """Surface that ends at no edge."""
-    for feature, road, start, end in _rows(road_map.layer("ROAD_SURFACE"), "status"):
-        if feature["status"] == "grown" and end - start >= LEAST_GAP:
-            geometry = feature.geometry()  # its parts live no longer than it
+    for fields, geometry, road, start, end in rows["ROAD_SURFACE"]:
+        if fields.get("status") == "grown" and end - start >= LEAST_GAP:
             rim = QgsGeometry(next(geometry.constParts()).exteriorRing().clone())
             text = tr("Road surface, {length:.0f} m: grown, no edge was found on one side at least").format(length=end - start)
             yield DoubtfulPiece(text, "surface", rim, road, start, LIKELY_WRONG["grown"] * (end - start))
 
 
-def lane_ends(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
+def _lane_ends(rows):
     """Driven lanes that end before their road does."""
-    roads = _roads(road_map)
-    for feature, road, start, end in _rows(road_map.layer("LANES"), "direction", "successors", "type", "lane"):
-        direction = feature["direction"]
-        if feature["type"] != "driving" or direction not in (1, -1) or feature["successors"] not in (None, NULL, ""):
+    roads = _roads(rows)
+    for fields, _, road, start, end in rows["LANES"]:
+        direction = fields.get("direction")
+        if fields.get("type") != "driving" or direction not in (1, -1) or fields.get("successors") not in (None, NULL, ""):
             continue
         station, left = (end, roads[road][1] - end) if direction == 1 else (start, start - roads[road][0])
-        line = along(road_map, road, station - 1.0, station + 1.0) if left > ROAD_END else None
+        line = _along(rows, road, station - 1.0, station + 1.0) if left > ROAD_END else None
         if line is not None:
-            text = tr("Lane {lane} ends here, {left:.0f} m before the end of the road").format(lane=feature["lane"], left=left)
+            text = tr("Lane {lane} ends here, {left:.0f} m before the end of the road").format(lane=fields.get("lane"), left=left)
             yield DoubtfulPiece(text, "lane", line, road, station, LIKELY_WRONG["lane_end"])
 
 
-def warned_places(road_map: RoadMap) -> Iterator[DoubtfulPiece]:
+def _warned_places(rows, warnings):
     """Places that the warnings of the run name."""
-    for text in road_map.provenance.warnings:
+    for text in warnings:
         for place in places_in(text):
-            line = along(road_map, place.road, place.start, max(place.end, place.start + 1.0))
+            line = _along(rows, place.road, place.start, max(place.end, place.start + 1.0))
             if line is not None:
                 yield DoubtfulPiece(tr("Warning: {text}").format(text=told(text)), "warning", line, place.road, place.start,
                                     LIKELY_WRONG["warning"] * max(place.end - place.start, 1.0))
 
 
-def along(road_map: RoadMap, road: int, start: float, end: float) -> QgsGeometry | None:
+def _along(rows, road, start, end):
     """The part of a line along a road between two stations, of the first kind of line that covers most of it; None where there is none."""
     best, most = None, 0.0
     for output in ALONG:
-        for feature, its_road, first, last in _rows(road_map.layer(output)):
+        for fields, geometry, its_road, first, last in rows[output]:
             inside = min(last, end) - max(first, start)
-            if its_road == road and last > first and inside > most and feature.attributeMap().get("kind") not in AWAY:
-                best, most = _part(feature, first, last, max(first, start), min(last, end)), inside
+            if its_road == road and last > first and inside > most and fields.get("kind") not in AWAY:
+                best, most = (fields, geometry, first, last), inside
         if most > 0.9 * (end - start):
             break
-    return best
+    return None if best is None else _part(*best, start, end)
 
 
-def _part(feature, first, last, start, end):
-    """The part of a feature's line between two stations, of which it covers `first` to `last`."""
-    geometry = feature.geometry()  # its parts live no longer than it
+def _part(fields, geometry, first, last, start, end):
+    """The part of a line between two stations, of which it covers `first` to `last`."""
     curve = next(geometry.constParts())
     scale = curve.length() / (last - first)
-    begin, finish = (start - first) * scale, (end - first) * scale
-    if feature.attributeMap().get("direction") == -1:
+    begin, finish = (max(first, start) - first) * scale, (min(last, end) - first) * scale
+    if fields.get("direction") == -1:
         begin, finish = curve.length() - finish, curve.length() - begin
     part = QgsGeometry(curve.curveSubstring(max(begin, 0.0), min(finish, curve.length())))
     part.get().dropZValue()
     return part
 
 
-def _rows(layer: QgsMapLayer | None, *needed: str) -> Iterator[tuple[QgsFeature, int, float, float]]:
-    """(feature, road, first and last station) of a layer that has these fields; rows that do not say where they lie are passed over."""
-    names = set() if layer is None else {field.name() for field in layer.fields()}
-    for feature in layer.getFeatures() if {"road", "station_m", "end_m", *needed} <= names else ():
-        location = [feature["road"], feature["station_m"], feature["end_m"]]
-        if not any(value in (None, NULL) for value in location) and not feature.geometry().isEmpty():
-            yield feature, int(location[0]), min(location[1:]), max(location[1:])
+def _rows(layer):
+    """[({field: value}, geometry, road, first and last station)] of a layer; rows that do not say where they lie are passed over."""
+    names = [] if layer is None else [field.name() for field in layer.fields()]
+    rows = []
+    for feature in layer.getFeatures() if {"road", "station_m", "end_m"} <= set(names) else ():
+        fields = dict(zip(names, feature.attributes()))
+        road, *ends = (_number(fields[name]) for name in ("road", "station_m", "end_m"))
+        if None not in (road, *ends) and not feature.geometry().isEmpty():
+            rows.append((fields, feature.geometry(), int(road), min(ends), max(ends)))
+    return rows
 
 
-def _roads(road_map):
+def _roads(rows):
     """{road: (first, last station)} that what is drawn of it covers; passes begin before the first points and end behind the last."""
     extents: dict[int, tuple[float, float]] = {}
     for output in (*ALONG[1:], "ROAD_SURFACE", "LANES"):
-        for _, road, start, end in _rows(road_map.layer(output)):
+        for _, _, road, start, end in rows[output]:
             extent = extents.get(road, (start, end))
             extents[road] = min(extent[0], start), max(extent[1], end)
     return extents

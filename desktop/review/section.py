@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,8 +20,8 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ...processing_provider.results.attributes import title_of as title_expression
 from ...processing_provider.results.road_maps import output_of
+from ...processing_provider.styling import title_of as title_expression
 
 HALF_WIDTH = 20.0     # m of the section either side
 REACH = 60.0          # m about a place within which the road's direction is sought
@@ -114,11 +114,12 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         colour = DRAWN.get(output_of(layer))
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
+        title = titles_of(layer)
         for feature in layer.getFeatures(line.boundingBox()):
             intersection = feature.geometry().intersection(line)
             for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)
-                result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title_of(layer, feature), colour, z + _curb_height(feature)))
+                result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title(feature), colour, z + _curb_height(feature)))
     return sorted(result, key=lambda crossing: -crossing.offset)
 
 
@@ -161,10 +162,14 @@ def _height(geometry, vertex):
     return point.z() if point is not None and point.is3D() else math.nan
 
 
-def title_of(layer: QgsVectorLayer, feature: QgsFeature) -> str:
-    """What a feature is: in the words of the result that its layer is, else by the display expression of the layer."""
+def titles_of(layer: QgsVectorLayer) -> Callable[[QgsFeature], str]:
+    """What says of a feature what it is: in the words of the result that its layer is, else by the display expression of the layer."""
     context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
-    context.setFeature(feature)
-    expression = title_expression(output_of(layer), {field.name() for field in layer.fields()})
-    title = QgsExpression(expression or layer.displayExpression()).evaluate(context)
-    return str(title) if title else layer.name()
+    expression = QgsExpression(title_expression(output_of(layer), {field.name() for field in layer.fields()}) or layer.displayExpression())
+    expression.prepare(context)
+
+    def title(feature):
+        context.setFeature(feature)
+        return str(expression.evaluate(context) or layer.name())
+
+    return title

@@ -249,11 +249,12 @@ class SectionView(QWidget):
         inside = np.abs(self.points[:, 0] - self.centre) <= self.half if len(self.points) else np.empty(0, bool)
         heights = [crossing.z for crossing in self._shown() if math.isfinite(crossing.z)]
         if heights:
-            self.low, self.high = min(heights) - HEIGHT_BELOW, max(heights) + HEIGHT_ABOVE
+            top = max(heights + [crossing.top for crossing in self._shown() if math.isfinite(crossing.top)])
+            self.low, self.high = min(heights) - HEIGHT_BELOW, top + HEIGHT_ABOVE
             boxes = self._label_boxes(self._shown(), self._frame(), QFontMetricsF(self._small(), self))
             # titles of many lines take more rows: they stay above the road
-            share = min(max(box.bottom() - TOP for box in boxes) / self._frame().height(), MOST_TITLES)
-            self.high = max(self.high, (max(heights) - share * self.low) / (1.0 - share))
+            share = min(max(box.bottom() for box in boxes) / self._frame().height(), MOST_TITLES)
+            self.high = max(self.high, (top - share * self.low) / (1.0 - share))
         elif inside.any():
             low = float(np.percentile(self.points[inside, 1], 2))
             self.low, self.high = low - HEIGHT_BELOW, low + HEIGHT_ABOVE + LEAST_HEIGHT

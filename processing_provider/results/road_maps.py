@@ -1,21 +1,37 @@
-"""Where a layer comes from, in the metadata that QGIS shows and keeps in the file, and the road maps of a project, by what layers say of it."""
+"""Where a layer comes from, in the metadata that QGIS shows and keeps in the file; the road maps of a project, by what layers say of it; its runs."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject, QgsProviderRegistry, QgsVectorLayer
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsLayerTree,
+    QgsLayerTreeGroup,
+    QgsMapLayer,
+    QgsProcessingContext,
+    QgsProject,
+    QgsProviderRegistry,
+    QgsRectangle,
+    QgsSettings,
+    QgsVectorLayer,
+)
 from qgis.PyQt import sip
 
 from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.provenance import Provenance, signed_by
-from ...algorithms.survey_files import cloud_files, survey_name
+from ...algorithms.survey_input import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
+from ..texts import tr
 
 OUTPUT = "lanewright/output"  # custom property of our layers: the result that they are, such as ROAD_EDGES
 KNOWN = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "CURVE_ELEMENTS", "PASSES", "CURB_POINTS",
@@ -243,3 +259,208 @@ def clouds_lie_in(road_map: RoadMap, folder: str, project: QgsProject) -> list[s
     for layer in road_map.layers if any(path_by_name.values()) else ():
         layer.setCustomProperty(MOVED, "\n".join([*present, *(path or name for name, path in path_by_name.items())]))
     return [name for name, path in path_by_name.items() if not path]
+
+
+# The place of new layers among those of the project; on the main thread, when QGIS has added them.
+
+UAV_IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
+BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
+
+
+class Setting:
+    """A yes or no of the user that QGIS keeps; no at first."""
+
+    def __init__(self, key: str):
+        self.key = f"lanewright/{key}"
+
+    def holds(self) -> bool:
+        return QgsSettings().value(self.key, False, type=bool)
+
+    def keep(self, value: bool) -> None:
+        QgsSettings().setValue(self.key, value)
+
+
+REPLACES_LAST_RUN = Setting("replace_last_run")  # a run takes the place of the last one of the same survey
+NAMES_ONLY = Setting("names_only")               # results name the files they were made from without their folders
+
+
+def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) -> None:
+    """Note which Run made a layer, hide or take away what it replaces, and put an image below the lines of the map it lies under.
+
+    output : the result whose look it has, such as ROAD_EDGES
+    """
+    node = project.layerTreeRoot().findLayer(layer.id())
+    if node is not None:
+        node.setExpanded(False)  # legends of thirty entries would hide the layers
+        _renew_group(node, run, project)
+    layer.setCustomProperty(OUTPUT, output)
+    describe_origin(layer, run.provenance, output)
+    road_map = road_map_of(layer, project)
+    if road_map is None:
+        return
+    former = [earlier for earlier in runs_of(project)
+              if earlier.group is not None and earlier.survey == road_map.survey != "" and layer not in earlier.layers]
+    if REPLACES_LAST_RUN.holds():
+        _remove_former(layer, output, former, project)
+    else:
+        _hide_former(output, road_map, former, project)
+    if output in UAV_IMAGES and road_map.group is not None:
+        _lay_under_map(layer, road_map, project)
+    image = road_map.layer("INTENSITY_IMAGE")
+    if image is not None and output in ("INTENSITY_IMAGE", "ROAD_SURFACE") and road_map.layer("ROAD_SURFACE") is not None:
+        project.layerTreeRoot().findLayer(image.id()).setItemVisibilityChecked(False)   # of what lies under asphalt only a dark fringe is seen
+
+
+def _renew_group(node, run, project):
+    """Call the group of a layer by the run that has written the layer in its place: QGIS leaves the layer there, and the run's own group empty."""
+    group = project.layerTreeRoot().findGroup(run.group) if run.group else None
+    if group is not None and not group.children():
+        if node.parent() is not project.layerTreeRoot():
+            node.parent().setName(run.group)
+        group.parent().removeChildNode(group)
+
+
+def _remove_former(layer, output, former, project):
+    """Take the same result of the last run of the same survey and algorithm out of the project, and its group once that is empty."""
+    algorithm = origin_of(layer).provenance.algorithm
+    for run in former:
+        old = run.layer(output)
+        if old is None or origin_of(old).provenance.algorithm != algorithm:
+            continue
+        project.removeMapLayer(old.id())
+        if not run.group.children():
+            run.group.parent().removeChildNode(run.group)
+        return
+
+
+def _hide_former(output, this, former, project):
+    """Switch off the earlier map of a survey that is made again, and the result of a stage that was run again: both would lie on each other."""
+    for run in former:
+        if run.group is this.group or run.layer(output) is None or run.provenance.ended > this.provenance.ended:
+            continue
+        if run.is_a_map and run.provenance.algorithm == this.provenance.algorithm:
+            run.group.setItemVisibilityChecked(False)
+    for old in this.older:
+        if origin_of(old).output == output:
+            project.layerTreeRoot().findLayer(old.id()).setItemVisibilityChecked(False)
+
+
+def _lay_under_map(image, this, project):
+    """Move an image into the road map it overlaps: above the intensity image, below everything that is drawn."""
+    root = project.layerTreeRoot()
+    for road_map in runs_of(project):
+        lines = [layer for layer in map(road_map.layer, LINES) if layer is not None]
+        if road_map.group in (None, this.group) or not any(
+                brought_to(image.extent(), image.crs(), line.crs()).intersects(line.extent()) for line in lines):
+            continue
+        below = {layer.id() for layer in map(road_map.layer, BELOW_IMAGES) if layer is not None}
+        rows = [row for row, node in enumerate(road_map.group.children()) if QgsLayerTree.isLayer(node) and node.layerId() in below]
+        node = root.findLayer(image.id())
+        road_map.group.insertChildNode(min(rows, default=len(road_map.group.children())), node.clone())
+        this.group.removeChildNode(node)
+        if not this.group.children():
+            this.group.parent().removeChildNode(this.group)
+        return
+
+
+def brought_to(extent: QgsRectangle, source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem) -> QgsRectangle:
+    """An extent in another CRS; an empty one where it has no place there."""
+    try:
+        return QgsCoordinateTransform(source, target, QgsProject.instance()).transformBoundingBox(extent)
+    except QgsCsException:
+        return QgsRectangle()
+
+
+# The run that results come from, and the table of all runs since QGIS was started.
+
+GROUP = "Lanewright"
+SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each other through their common context
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of an algorithm."""
+
+    provenance: Provenance   # what its layers say of it
+    survey: str   # name of the survey, "" where none is known
+    group: str   # name of the layer group, "" for none
+
+
+def run_of(provenance: Provenance, clouds: list[str], whole: bool, context: QgsProcessingContext, group: str | None = None) -> Run:
+    """The run that has just ended.
+
+    clouds : paths of its point clouds; none for a stage that starts from another's result
+    whole : whether it makes a map in one call. Each such run has a group of its own, named by time and survey;
+        the stages of a survey share one, since together they make one map
+    context : of the run; the stages of a model have one in common
+    group : that its inputs stand in, "" where they stand in none; a stage puts its result beside them. None where they are no layers of ours
+    """
+    store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
+    survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
+    store.setProperty(SURVEY_OF_RUN, survey)
+    name = survey or GROUP
+    return Run(provenance, survey, f"{datetime.now():%m-%d %H:%M:%S} {name}" if whole else name if group is None else group)
+
+
+# The runs since QGIS was started, side by side: what a batch of surveys gave, and why some of them failed.
+
+MOST_RUNS = 1000  # kept; a batch of more is read from its reports
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """One run: its algorithm's title, survey, begin, seconds, numbers by label, why it failed ("" if it did not), warnings, and report or ""."""
+
+    title: str
+    survey: str
+    began: datetime
+    seconds: float
+    numbers: Mapping[str, float]
+    failure: str = ""
+    warnings: tuple[str, ...] = ()
+    report: str = ""
+
+
+_runs: list[RunRecord] = []
+
+
+def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[str, Any] | None = None, failure: str = "",
+             warnings: Sequence[str] = ()) -> None:
+    """Remember a run that has just ended: when it began by local time, its results or the sentence that it failed with, its warnings."""
+    numbers = {number.label: results[number.name] for number in declaration.numbers if results is not None and number.name in results}
+    seconds = (datetime.now() - began).total_seconds()
+    report = next((path for path in map(str, (results or {}).values()) if path.lower().endswith((".html", ".htm"))), "")
+    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure, tuple(warnings), report))
+    del _runs[:-MOST_RUNS]
+
+
+def last_run() -> RunRecord | None:
+    """The run that ended last; None where there was none."""
+    return _runs[-1] if _runs else None
+
+
+def last_report() -> str:
+    """Path of the last report since QGIS was started; "" where there was none, or it is gone."""
+    path = next((run.report for run in reversed(_runs) if run.report), "")
+    return path if Path(path).is_file() else ""
+
+
+def run_tables() -> list[tuple[str, list[str], list[list[Any]]]]:
+    """(title, head, rows) of a table for every algorithm, with a row for each of its runs since QGIS was started."""
+    tables = []
+    for title in dict.fromkeys(run.title for run in _runs):
+        runs = [run for run in _runs if run.title == title]
+        labels = list(dict.fromkeys(label for run in runs for label in run.numbers))
+        rows = [[f"{run.began:%Y-%m-%d %H:%M:%S}", run.survey or "–", *(run.numbers.get(label, "–") for label in labels),
+                 round(run.seconds, 1), run.failure or "–"] for run in runs]
+        tables.append((title, [tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")], rows))
+    return tables
+
+
+def run_table() -> str:
+    """An HTML page with these tables; "" where there was no run."""
+    if not _runs:
+        return ""
+    from ...products.report.page import html_page
+
+    return html_page("runs", tables=run_tables())

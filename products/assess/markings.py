@@ -22,6 +22,7 @@ from .matching import Rates
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
 CHART_BLOCK = 16  # cells, side of the blocks summed up for the chart along the road
 WriteTile = Callable[[tuple[int, int], np.ndarray], None]
+Burn = Callable[[tuple[float, float, float, float], tuple[int, int]], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -111,18 +112,19 @@ def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: M
     counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
                          _numbers(reference_classes, len(reference), classes), len(classes), settings)
     margin = max(settings.tolerances)
-    burners = _PolygonRasteriser(result), _PolygonRasteriser(reference)
-    valid: list[_PolygonRasteriser | _DataMask] = [_PolygonRasteriser([area])] if area is not None else []
-    valid += [_DataMask(seen)] if seen else []
+    burners = _rasteriser(result), _rasteriser(reference)
+    valid = ([] if area is None else [_rasteriser([area])]) + ([_data_mask(seen)] if seen else [])
     tiles = _covering_tiles([*result, *reference], settings.cell_size, margin)
     shape = (BURN_TILE + 2 * margin,) * 2
     inner = slice(margin, margin + BURN_TILE)
     for number, tile in enumerate(tiles):
         progress.report(number / len(tiles))
         bounds = _tile_bounds(tile, settings.cell_size, margin)
-        result_ids, reference_ids = (burner.burn(bounds, shape) for burner in burners)
-        judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
-        widened = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
+        result_ids, reference_ids = (burn(bounds, shape) for burn in burners)
+        judged = np.logical_and.reduce([burn(bounds, shape)[inner, inner] > 0 for burn in valid]) if valid else True
+        # and what lies within so many cells, corners included
+        widened = {t: [cv2.dilate(np.uint8(ids > 0), np.ones((2 * t + 1,) * 2, np.uint8))[inner, inner] > 0 for ids in (result_ids, reference_ids)]
+                   for t in settings.tolerances}
         values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], widened, judged)
         counts.add_blocks(values, tile, settings.cell_size)
         if write_tile is not None and values.any():
@@ -190,16 +192,8 @@ class _CellCounts:
 
 def _numbers(names, count, classes):
     """Class number by polygon number; 0 for none."""
-    if names is None:
-        return np.zeros(count + 1, int)
     number_of = {name: number for number, name in enumerate(classes, start=1)}
-    return np.array([0, *(0 if name is None else number_of[str(name)] for name in names)])
-
-
-def _dilated(mask, cells):
-    """The mask and what lies within so many cells of it, corners included."""
-    side = 2 * cells + 1
-    return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)).astype(bool) if cells else mask
+    return np.array([0, *(0 if name is None else number_of[str(name)] for name in names or [None] * count)])
 
 
 def _add(counts, numbers):
@@ -216,82 +210,60 @@ def _outcome(cells, good, share, otherwise):
 BURN_TILE = 2048  # cells, side of a tile
 
 
-class _PolygonRasteriser:
-    """Rasterises numbered polygons tile by tile: a cell belongs to a polygon if its centre does."""
+@gdal_exceptions()
+def _rasteriser(polygons: Sequence[Any]) -> Burn:
+    """A function of (min x, min y, max x, max y) and (rows, columns) that gives int32 numbers of polygons, from 1 on, 0 elsewhere.
+
+    A cell belongs to a polygon if its centre does, to the later of two that overlap.
+    """
+    source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
+    layer = source.CreateLayer("polygons", None, ogr.wkbUnknown)
+    layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
+    for number, wkb in enumerate(shapely.to_wkb(np.asarray(polygons, object), output_dimension=2), start=1):
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetField(0, number)
+        feature.SetGeometryDirectly(ogr.CreateGeometryFromWkb(wkb))
+        layer.CreateFeature(feature)
 
     @gdal_exceptions()
-    def __init__(self, polygons: Sequence[Any]) -> None:
-        self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
-        self._layer = self._source.CreateLayer("polygons", None, ogr.wkbUnknown)
-        self._layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
-        definition = self._layer.GetLayerDefn()
-        for number, wkb in enumerate(shapely.to_wkb(np.asarray(polygons, object), output_dimension=2), start=1):
-            feature = ogr.Feature(definition)
-            feature.SetField(0, number)
-            feature.SetGeometryDirectly(ogr.CreateGeometryFromWkb(wkb))
-            self._layer.CreateFeature(feature)
-
-    @gdal_exceptions()
-    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
-        """(rows, columns) int32 numbers of polygons, from 1 on, 0 elsewhere, within (min x, min y, max x, max y); the later of two that overlap."""
-        rows, columns = shape
-        raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Int32)
-        size = (bounds[2] - bounds[0]) / columns
+    def burn(bounds, shape, source=source):   # which holds the layer
+        raster = gdal.GetDriverByName("MEM").Create("", shape[1], shape[0], 1, gdal.GDT_Int32)
+        size = (bounds[2] - bounds[0]) / shape[1]
         raster.SetGeoTransform((bounds[0], size, 0.0, bounds[3], 0.0, -size))
-        self._layer.SetSpatialFilterRect(*bounds)
+        layer.SetSpatialFilterRect(*bounds)
         # GDAL warns, tile by tile, that two layers without CRS match
         gdal.PushErrorHandler("CPLQuietErrorHandler")
         try:
-            gdal.RasterizeLayer(raster, [1], self._layer, options=["ATTRIBUTE=number"])
+            gdal.RasterizeLayer(raster, [1], layer, options=["ATTRIBUTE=number"])
         finally:
             gdal.PopErrorHandler()
         return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
 
+    return burn
 
-class _DataMask:
-    """The cells in which a raster has data: where nothing was scanned, nothing can be judged."""
+
+@gdal_exceptions()
+def _data_mask(path: str) -> Burn:
+    """The same of whether a raster has a value at the centre of each cell: where nothing was scanned, nothing can be judged."""
+    raster = open_raster(path)
+    view = gdal.Translate("", raster, format="VRT", bandList=[1])
+    view.SetGeoTransform(place_of_raster(raster)[0] or NO_PLACE)
 
     @gdal_exceptions()
-    def __init__(self, path: str) -> None:
-        self._raster = open_raster(path)
-        self._inverse = gdal.InvGeoTransform(place_of_raster(self._raster)[0] or NO_PLACE)
+    def burn(bounds, shape):
+        burnt = gdal.Warp("", view, format="MEM", outputBounds=bounds, width=shape[1], height=shape[0], resampleAlg="near",
+                          outputType=gdal.GDT_Float64, dstNodata="nan")
+        return np.isfinite(np.frombuffer(burnt.ReadRaster(), np.float64)).reshape(shape)
 
-    @gdal_exceptions()
-    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
-        """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `_PolygonRasteriser.burn`."""
-        size = (bounds[2] - bounds[0]) / shape[1]
-        x = bounds[0] + (np.arange(shape[1]) + 0.5) * size
-        y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
-        column = np.floor(self._inverse[0] + self._inverse[1] * x).astype(int)
-        row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
-        column_inside = (column >= 0) & (column < self._raster.RasterXSize)
-        row_inside = (row >= 0) & (row < self._raster.RasterYSize)
-        burnt = np.zeros(shape, bool)
-        if not column_inside.any() or not row_inside.any():
-            return burnt
-        column, row = column[column_inside], row[row_inside]
-        first, above = int(column.min()), int(row.min())
-        wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
-        band = self._raster.GetRasterBand(1)
-        data = np.frombuffer(band.ReadRaster(first, above, wide, high, buf_type=gdal.GDT_Float64), np.float64).reshape(high, wide)
-        filled = np.isfinite(data)
-        if band.GetNoDataValue() is not None:
-            filled &= data != band.GetNoDataValue()
-        burnt[np.ix_(row_inside, column_inside)] = filled[np.ix_(row - above, column - first)]
-        return burnt
+    return burn
 
 
 def _covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
     """Sorted (column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch."""
     side = BURN_TILE * cell_size
-    low, high = np.full((0, 2), 0), np.full((0, 2), 0)
-    if len(polygons):
-        bounds = shapely.bounds(np.asarray(polygons, object)) + margin * cell_size * np.array([-1, -1, 1, 1])
-        low, high = np.floor(bounds[:, :2] / side).astype(int), np.floor(bounds[:, 2:] / side).astype(int)
-    tiles: set[tuple[int, int]] = set()
-    for (a, b), (c, d) in zip(low.tolist(), high.tolist()):
-        tiles.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
-    return sorted(tiles)
+    bounds = shapely.bounds(np.asarray(polygons, object)).reshape(-1, 4) + margin * cell_size * np.array([-1, -1, 1, 1])
+    return sorted({(column, row) for a, b, c, d in np.floor(bounds / side).astype(int).tolist() for column in range(a, c + 1)
+                   for row in range(b, d + 1)})
 
 
 def _tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:

@@ -28,8 +28,8 @@ def classified_copy(file: CloudHeader, classifier: PointClassifier, path: str, u
     formats 6, 7, 9 and 10 that hold the same. Noise (classes 7 and 18) and withheld points keep their class, as do points of which nothing is
     known, but for classes of `PointClass`, which an earlier run may have given.
 
-    file : header of a file of the survey; its chunks of an octree (COPC) are left out of the copy, since they do not fit LAZ
-    path : of the copy, LAS or LAZ by its ending
+    file : header of a file of the survey
+    path : of the copy, LAS, LAZ or COPC by its ending
     unrolled : path of a second copy with the points of the road laid out straight, "" for none: x is the station, y the offset less 100 m for
         each road before, z the height above the road
 

@@ -17,7 +17,7 @@ from ...core.io.crs import as_in_file, horizontal_part, parse_crs
 from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
-from .xml_tree import xml_text
+from .xml_tree import file_text
 
 SAME_RISE = 0.1         # m in height between vertices at one place that are one node
 HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
@@ -311,11 +311,6 @@ def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -
     used = sorted(set().union(*(way.nodes for way in draft.ways)))
     id_of = {node: k for k, node in enumerate(used, start=1)}
     square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)
-    nodes = []
-    for node in used:
-        tags = {"ele": f"{draft.nodes[node, 2]:.4f}"}
-        if local or degrees.local:
-            tags |= dict(zip(("local_x", "local_y"), map("{:.4f}".format, draft.nodes[node, :2] - square)))
-        nodes.append((id_of[node], *degrees.lonlat[node], tags))
+    nodes = np.c_[degrees.lonlat[used], draft.nodes[used] - np.append(square, 0.0)].tolist()
     first = {"way": len(used) + 1, "relation": len(used) + 1 + len(draft.ways)}
-    return xml_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)
+    return file_text("lanelet2.xml", local=local or degrees.local, nodes=nodes, draft=draft, id_of=id_of, first=first)

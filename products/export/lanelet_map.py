@@ -142,10 +142,6 @@ class LaneletNetwork:
                     pairs += [(id, opposite) for id in ids for opposite in by_nodes.get((right, left), ())]
         return pairs
 
-    def beside(self, id: int) -> list[int]:
-        """Lanelets that share a border with this one."""
-        return [neighbour for neighbour, _ in self.abreast(id)]
-
     def abreast(self, id: int) -> list[tuple[int, bool]]:
         """(lanelet that shares a border with this one, whether it is driven the same way)."""
         lanelet, turned = self.whole.lanelets[id], {"left": self.reversed_left, "right": self.reversed_right}

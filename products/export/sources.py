@@ -565,10 +565,9 @@ def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
 
 
 def _least(count, indices, values):
-    """(count,) the least of the values of each index, which rise; inf where there is none."""
-    least, begin = np.full(count, np.inf), np.flatnonzero(np.diff(indices, prepend=-1))
-    if len(begin):
-        least[indices[begin]] = np.minimum.reduceat(values, begin)
+    """(count,) the least of the values of each index; inf where there is none."""
+    least = np.full(count, np.inf)
+    np.minimum.at(least, indices, values)
     return least
 
 

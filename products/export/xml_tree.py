@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import io
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,15 +17,12 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.progress import Progress
 
 CHUNK = 1 << 16             # bytes handed to the parser at once
-MAX_PENDING = 4 << 20       # bytes of one tag: longer ones hide no map
-MAX_TEXT = 1 << 20          # characters of text kept of one element
-MAX_BLANK = 64 << 20        # bytes without any tag
+MAX_UNTAGGED = 4 << 20      # bytes without the end of a tag: longer tags, texts and blanks hide no map
 MAX_ELEMENTS = 1_000_000    # some hundred kilometres of lanes
 MAX_DEPTH = 60
 MAX_MAP_NUMBER = 1e9            # metres or any other unit of a map
 MAX_DIGITS = 400            # characters of a number
 HEAD = 400                  # bytes in which the declaration of the encoding is looked for
-NATIVE = ("utf-8", "utf-16", "iso8859-1", "ascii")   # codecs that the parser has itself
 BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32", codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16",
                     codecs.BOM_UTF16_BE: "utf-16"}   # those of 32 bits first: they begin like those of 16
 
@@ -94,22 +92,27 @@ def written(value: Any) -> str:
     return str(value)
 
 
-def xml_text(template: str, **values: Any) -> str:
-    """The whole file as text, by a template and what it is filled with."""
+def file_text(template: str, **values: Any) -> str:
+    """A whole file as text, by a template and what it is filled with, which in XML is written as that has it."""
     return str(_templates().get_template(template).render(values))
 
 
 @lru_cache(maxsize=1)
 def _templates():
-    """The jinja2.Environment of the files: what is put in is written as XML has it; `attributes` of an element are left out where they are None."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only when a file is written: QGIS starts no slower
+    """The jinja2.Environment of the files; `attributes` of an element of XML are left out where they are None."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_eval_context  # only when a file is written: QGIS starts no slower
     from markupsafe import Markup
 
     def escaped(value, quote=True):
         return value if isinstance(value, Markup) else Markup(escape(written(value), quote))   # nosec B704: it is escaped
 
-    environment = Environment(loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=True, undefined=StrictUndefined,
-                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, finalize=escaped)
+    @pass_eval_context
+    def put_in(context, value):
+        return escaped(value) if context.autoescape else value
+
+    environment = Environment(  # nosec B701: XML is escaped
+        loader=FileSystemLoader(str(Path(__file__).parent / "templates")), autoescape=lambda name: name.endswith(".xml"), undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, finalize=put_in)
     environment.filters["text"] = lambda value: escaped(value, quote=False)
     environment.globals.update(zip=zip, attributes=lambda **values: Markup("").join(
         Markup(' {}="{}"').format(name, escaped(value)) for name, value in values.items() if value is not None))
@@ -135,63 +138,50 @@ class _Reading:
     def __init__(self, path, root_tag, kind):
         self.path, self.root_tag, self.kind = path, root_tag, kind
         self.root, self.open, self.count, self.last_tag = None, [], 0, 0
-        self.in_utf8 = False
-        self.encoding = self._encoding()
-        self.parser = parser = ParserCreate("utf-8" if self.encoding else None)
+        self.encoding, self.is_named = self._encoding()
+        self.parser = parser = ParserCreate("utf-8")   # what it is fed
         parser.StartElementHandler, parser.EndElementHandler = self._start, self._end
-        parser.CharacterDataHandler = self._text
+        parser.CharacterDataHandler, parser.buffer_text = self._text, True   # not line by line
         parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = self._declared
         parser.UnparsedEntityDeclHandler = parser.ExternalEntityRefHandler = self._declared
 
     def run(self, progress):
         size, fed = max(self.path.stat().st_size, 1), 0
-        decoder = codecs.getincrementaldecoder(self.encoding)() if self.encoding else None
         try:
-            with open(self.path, "rb") as file:
-                while chunk := file.read(CHUNK):
-                    if decoder is not None:
-                        chunk = decoder.decode(chunk).encode("utf-8")
+            with open(self.path, encoding=self.encoding, newline="") as file:
+                while chunk := file.read(CHUNK).encode("utf-8"):
                     self.parser.Parse(chunk, False)
                     fed += len(chunk)
-                    if fed - self.parser.CurrentByteIndex > MAX_PENDING:
-                        self._refuse(f"has {MAX_PENDING >> 20} MB without the end of a tag")
-                    if file.tell() % (CHUNK * 64) == 0:
-                        progress.report(file.tell() / size)
-                self.parser.Parse(decoder.decode(b"", True).encode("utf-8") if decoder is not None else b"", True)
+                    if fed - self.last_tag > MAX_UNTAGGED:
+                        self._refuse(f"has more than {MAX_UNTAGGED >> 20} MB without the end of a tag")
+                    progress.report(file.buffer.tell() / size)
+                self.parser.Parse(b"", True)
         except UnicodeError as problem:
-            raise RoadExtractionError(f"{self.path} is not written in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say "
-                                      "so in its first line.") from problem
+            named = f"in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say so" if self.is_named else \
+                "in UTF-8, though it names no other encoding. Save it again as UTF-8, or name its encoding"
+            raise RoadExtractionError(f"{self.path} is not written {named} in its first line.") from problem
         except ExpatError as problem:
-            if self.in_utf8 and not _is_utf8(self.path):
-                raise RoadExtractionError(f"{self.path} is not written in UTF-8, though it names no other encoding. Save it again as UTF-8, or "
-                                          "name its encoding in its first line.") from problem
             raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
         return self.root
 
     def _encoding(self):
-        """The codec that the file is decoded by, "" where the parser does it by itself."""
+        """(the encoding of the file, whether it is another than UTF-8 that the file names)."""
         with open(self.path, "rb") as file:
             head = file.read(HEAD)
         marked = next((name for mark, name in BYTE_ORDER_MARKS.items() if head.startswith(mark)), "")
-        if marked:
-            return "" if marked in NATIVE else marked
-        if head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
-            return "utf-32-le" if head[:1] == b"<" else "utf-32-be"
+        if marked or head[:4] in ("<".encode("utf-32-le"), "<".encode("utf-32-be")):
+            return marked or ("utf-32-le" if head[:1] == b"<" else "utf-32-be"), True
         declared = re.match(rb"""\s*<\?xml[^>]*?\sencoding\s*=\s*["']([^"'>]*)["']""", head)
-        name = declared[1].decode("latin-1") if declared else ""
+        name = (declared[1] if declared else b"").decode("latin-1") or "utf-8"
         try:
-            codec = codecs.lookup(name) if name else None
-            # others, such as zip and hex, are no encodings of text
-            valid = codec is None or codec._is_text_encoding and codec.incrementaldecoder is not None
+            io.TextIOWrapper(io.BytesIO(), name)   # others than those of text, such as zip and hex, are refused
+            codec = codecs.lookup(name).name
         except (LookupError, ValueError):
-            valid = False
-        if not valid:
             raise RoadExtractionError(f"{self.path} declares the encoding {name[:40]!r}, which is not known. Save it again as UTF-8, and say so in "
-                                      "its first line.")
-        if codec is not None and codec.name.startswith(("utf-16", "utf-32")):
-            return "utf-8"   # the declaration itself is written in single bytes: some programs state what they have in memory
-        self.in_utf8 = codec is None or codec.name == "utf-8"
-        return "" if codec is None or codec.name in NATIVE else codec.name
+                                      "its first line.") from None
+        # the declaration itself is written in single bytes: some programs state what they have in memory
+        codec = "utf-8" if codec.startswith(("utf-16", "utf-32")) else codec
+        return codec, codec != "utf-8"
 
     def _refuse(self, why):
         raise RoadExtractionError(f"{self.path} {why}. That is not {self.kind}, so it was not read further. Export the map again, or in parts.")
@@ -223,22 +213,6 @@ class _Reading:
         self.last_tag = self.parser.CurrentByteIndex
 
     def _text(self, text):
-        if not self.open or not (self.open[-1].text or text.strip()):
-            if self.parser.CurrentByteIndex - self.last_tag > MAX_BLANK:
-                self._refuse(f"has more than {MAX_BLANK >> 20} MB of blanks")
-            return
         element = self.open[-1]
-        if len(element.text) + len(text) > MAX_TEXT:
-            self._refuse(f"has a text of more than {MAX_TEXT:,} characters")
-        element.text += text
-
-
-def _is_utf8(path):
-    decoder = codecs.getincrementaldecoder("utf-8")()
-    try:
-        with open(path, "rb") as file:
-            while chunk := file.read(CHUNK):
-                decoder.decode(chunk)
-    except UnicodeError:
-        return False
-    return True
+        if element.text or text.strip():
+            element.text += text

@@ -11,8 +11,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...core.common.arrays import order_by
 from ...core.road.common.pseudo_scanlines import lowest_layers
-from ...core.survey.frame.passes import Pass
-from ...core.survey.frame.road_frame import RoadFrame
+from ...core.survey.frame.road_frame import Pass, RoadFrame
 from ...core.survey.survey import Survey
 
 SLICE_LENGTH = 1.0        # m along the road over which a transverse profile is averaged

@@ -50,8 +50,6 @@ class GeoreferenceSettings:
     def __post_init__(self):
         """Check the limits of all settings, and the texts of the choices."""
         check_limits(self)
-        if self.order not in (0, 1, 2, 3):
-            raise RoadExtractionError(f"The order of the polynomial is {self.order}; it must be 0 (a shift), 1, 2 or 3.")
         for name, choices in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
             if getattr(self, name) not in choices:
                 raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(choices)}.")

@@ -134,8 +134,6 @@ def to_map(x: np.ndarray, y: np.ndarray, source: str, target: str) -> tuple[np.n
 FULL_FRAME_DIAGONAL = 43.27  # mm, of the 24 x 36 mm that a focal length "in 35 mm film" refers to
 _STEEP = 45.0                # ° below the horizon from which a camera looks down rather than ahead
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:/\d+)?"
-# XMP names, with or without their prefix; DJI wrote the second spelling of longitude for years
-_LATITUDE, _LONGITUDE = ("GpsLatitude", "GPSLatitude"), ("GpsLongitude", "GpsLongtitude", "GPSLongitude")
 
 
 @dataclass(frozen=True)
@@ -172,47 +170,30 @@ def _text(value):
 
 def position_tags(exif: Mapping[str, str], xmp: str = "") -> _PositionTags | None:
     """The same from EXIF items, named as GDAL names them, and from the text of an XMP packet."""
-    latitude = _first(_xmp_degrees(xmp, _LATITUDE), _exif_degrees(exif, "Latitude"))
-    longitude = _first(_xmp_degrees(xmp, _LONGITUDE), _exif_degrees(exif, "Longitude"))
+    def tag(*names):
+        """The number of the first of these tags that has one; south and west are negative."""
+        for name in names:
+            text = exif.get(name) or _xmp_text(xmp, name)
+            value = _numbers(text)
+            if value is not None:
+                return -abs(value) if (text + exif.get(name + "Ref", "")).strip()[-1:].upper() in ("S", "W") else value
+        return None
+
+    # of XMP with or without their prefix; DJI wrote the second spelling of longitude for years
+    latitude = tag("GpsLatitude", "GPSLatitude", "EXIF_GPSLatitude")
+    longitude = tag("GpsLongitude", "GpsLongtitude", "GPSLongitude", "EXIF_GPSLongitude")
     # a receiver without a fix writes zeros
     if latitude is None or longitude is None or not abs(latitude) <= 90 or not abs(longitude) <= 180 or latitude == longitude == 0:
         return None
-    pitch = _xmp_number(xmp, "GimbalPitchDegree")
-    heading = _first(_xmp_number(xmp, "GimbalYawDegree") if pitch is None or pitch < -_STEEP else None,
-                     _xmp_number(xmp, "FlightYawDegree"), _numbers(exif.get("EXIF_GPSImgDirection", "")))
-    return _PositionTags(
-        latitude, longitude, heading, _xmp_number(xmp, "RelativeAltitude"),
-        _first(_numbers(exif.get("EXIF_FocalLengthIn35mmFilm", "")), _xmp_number(xmp, "FocalLengthIn35mmFilm")))
-
-
-def _first(*values):
-    return next((value for value in values if value is not None), None)
+    pitch = tag("GimbalPitchDegree")
+    heading = tag(*["GimbalYawDegree"] * (pitch is None or pitch < -_STEEP), "FlightYawDegree", "EXIF_GPSImgDirection")
+    return _PositionTags(latitude, longitude, heading, tag("RelativeAltitude"), tag("EXIF_FocalLengthIn35mmFilm", "FocalLengthIn35mmFilm"))
 
 
 def _xmp_text(xmp, name):
     """The text of an attribute or an element, "" where there is none."""
     match = re.search(rf"\b{name}\s*=\s*[\"']([^\"']*)[\"']|<(?:[\w-]+:)?{name}>([^<]*)<", xmp)
     return (match.group(1) or match.group(2) or "").strip() if match else ""
-
-
-def _xmp_number(xmp, name):
-    return _numbers(_xmp_text(xmp, name))
-
-
-def _xmp_degrees(xmp, names):
-    for name in names:
-        text = _xmp_text(xmp, name)
-        value = _numbers(text)
-        if value is not None:
-            return -abs(value) if text[-1:].upper() in ("S", "W") else value
-    return None
-
-
-def _exif_degrees(exif, name):
-    value = _numbers(exif.get(f"EXIF_GPS{name}", ""))
-    if value is None:
-        return None
-    return -value if exif.get(f"EXIF_GPS{name}Ref", "").strip().upper()[:1] in ("S", "W") else value
 
 
 def _numbers(text):
@@ -251,20 +232,15 @@ def pair_cutouts(image: SourceImage, intensity: IntensityImage, pixel: np.ndarra
 def _photo(dataset, bands, image, place, factor, per_cell, side):
     """A part of the image, turned as the map is; `factor`: pixels per metre, as a complex number."""
     reach = int(np.ceil(0.75 * side * per_cell * abs(factor))) + 2
-    column, row = int(place[0]) - reach, int(place[1]) - reach
-    c0, c1 = max(0, column), min(image.width, column + 2 * reach)
-    r0, r1 = max(0, row), min(image.height, row + 2 * reach)
+    (c0, c1), (r0, r1) = ((max(0, int(at) - reach), min(size, int(at) + reach)) for at, size in zip(place, (image.width, image.height)))
     if c0 >= c1 or r0 >= r1:
         return np.zeros((side, side, 3), np.uint8)
-
-    window = np.zeros((2 * reach, 2 * reach, 3), np.float32)
-    for number, band in enumerate(bands):
-        data = np.frombuffer(dataset.GetRasterBand(band).ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=gdal.GDT_Float32), np.float32)
-        window[r0 - row:r1 - row, c0 - column:c1 - column, number] = data.reshape(r1 - r0, c1 - c0)
+    window = np.stack([np.frombuffer(dataset.GetRasterBand(band).ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=gdal.GDT_Float32), np.float32).reshape(
+        r1 - r0, c1 - c0) for band in bands], axis=2)
     # from pixels of the cut-out, right and down, to those of the window
     a, b = factor.real * per_cell, factor.imag * per_cell
     matrix = np.array([[a, b, 0.0], [-b, a, 0.0]])
-    matrix[:, 2] = np.array([place[0] - column - 0.5, place[1] - row - 0.5]) - matrix[:, :2] @ [side / 2 - 0.5, side / 2 - 0.5]
+    matrix[:, 2] = np.array([place[0] - c0 - 0.5, place[1] - r0 - 0.5]) - matrix[:, :2] @ [side / 2 - 0.5, side / 2 - 0.5]
     shrink = per_cell * abs(factor)
     smooth = cv2.GaussianBlur(window, (0, 0), 0.4 * shrink) if shrink > 1.5 else window
     cut = cv2.warpAffine(smooth, matrix, (side, side), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)

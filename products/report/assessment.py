@@ -14,7 +14,7 @@ from ...core.lazy import cv2
 from ..assess.lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, BoundaryAccuracy, LineAccuracy, LineAccuracySettings, LineMatch
 from ..assess.markings import MarkingAccuracy
 from ..assess.matching import Errors
-from .page import MAP_MARGIN, Chart, draw_map, grey_background, html_page, percent
+from .page import MAP_MARGIN, Chart, draw_map, grey_background, html_page, percent, round_down
 
 OUTCOME_COLOURS = {"correct": "#009e73", "missed": "#d55e00", "false": "#a33ea1", "excluded": "#9a9a9a"}
 BAR_COLOUR, CURVE_COLOUR = "#4a7fb5", "#333333"
@@ -107,8 +107,7 @@ def _outcome_map(layer, background=None, filled=False):
 
 def _scale_bar(picture, scale, width):
     """Draw a scale bar of a round length, at most a fifth of the map; return that length in metres."""
-    power = 10.0 ** np.floor(np.log10(width / 5))
-    length = power * max(m for m in (1, 2, 5) if m * power <= width / 5 * 1.001)
+    length = round_down(width / 5)
     base, left = picture.shape[0] - 14, 14
     cv2.rectangle(picture, (left - 3, base - 4), (left + int(length * scale) + 3, base + 4), (255, 255, 255), -1)
     cv2.rectangle(picture, (left, base - 2), (left + int(length * scale), base + 2), (30, 30, 30), -1)

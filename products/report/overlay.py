@@ -12,7 +12,7 @@ from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.georeference import Georeferencing, drawn_area, output_grid
 from ..overlay.matching.propose import Proposal
 from ..overlay.rough_place import pair_cutouts
-from .page import html_page
+from .page import html_page, round_down
 
 RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture
 MAX_ARROW_LENGTH = 0.06       # of the longest arrow, as a share of that side
@@ -61,7 +61,7 @@ def _residual_picture(result: Georeferencing, drawn: str) -> tuple[np.ndarray, f
         cv2.polylines(canvas, [np.rint(outline * 16).astype(np.int32)], True, (255, 255, 255), 1, cv2.LINE_AA, 4)
     judged = points.roles != DISABLED
     longest = np.hypot(*result.errors[judged].T).max() if judged.any() else 0.0
-    magnification = _round_down(MAX_ARROW_LENGTH * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
+    magnification = round_down(MAX_ARROW_LENGTH * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
     # An arrow starts where the polynomial puts the point and is lengthened from there
     starts = at(points.easting - result.errors[:, 0], points.northing - result.errors[:, 1])
     tips = starts + result.errors * np.array([1.0, -1.0]) * scale * magnification
@@ -78,12 +78,6 @@ def _residual_picture(result: Georeferencing, drawn: str) -> tuple[np.ndarray, f
 
 def _whole(place):
     return tuple(int(v) for v in np.clip(np.rint(place), -10_000, 10_000))
-
-
-def _round_down(value):
-    """1, 2 or 5 times a power of ten."""
-    ten = 10.0 ** np.floor(np.log10(value))
-    return float(max(step * ten for step in (1, 2, 5) if step * ten <= value * (1 + 1e-9)))
 
 
 @gdal_exceptions()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -38,8 +37,10 @@ def templates() -> Any:
                               lstrip_blocks=True, keep_trailing_newline=True)
     environment.globals.update(tr=tr, told=told, word=word, language=language, number=number, collected=_Rows,
                                pick=lambda row, names: [row.get(name) for name in names.split()])
-    environment.filters.update(shown=_shown, percent=percent, base64_png=_base64_png)
-    environment.tests.update(figure=_is_figure, figures=_are_figures)
+    environment.filters.update(shown=_shown, percent=percent, base64_png=lambda image: base64.b64encode(
+        cv2.imencode(".png", image)[1].tobytes()).decode("ascii"))   # of pictures (H, W, 3) uint8, blue, green, red
+    environment.tests.update(figure=_is_figure, figures=lambda rows, column: bool(rows) and all(
+        row[column] is None or _is_figure(row[column]) for row in rows))
     parts = vars(environment.get_template("parts.html").module)
     environment.globals.update({name: macro for name, macro in parts.items() if not name.startswith("_")})
     return environment
@@ -61,6 +62,12 @@ def number(value: float) -> str:
     return f"{value:,.{digits}f}".replace(",", "\u202f")
 
 
+def round_down(value: float) -> float:
+    """1, 2 or 5 times a power of ten, the largest that is not above a value."""
+    ten = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * ten for step in (1, 2, 5) if step * ten <= value * (1 + 1e-9)))
+
+
 class _Rows(list):
     """The rows of a table, which a template adds one by one."""
 
@@ -71,10 +78,6 @@ class _Rows(list):
 
 def _is_figure(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _are_figures(rows: Sequence[Sequence[Any]], column: int) -> bool:
-    return bool(rows) and all(row[column] is None or _is_figure(row[column]) for row in rows)
 
 
 def _shown(value: Any, decimals: int | None = None) -> Any:
@@ -89,11 +92,6 @@ def _shown(value: Any, decimals: int | None = None) -> Any:
 def percent(share: float) -> float | None:
     """A share as a percentage; None for NaN."""
     return None if share != share else 100.0 * share
-
-
-def _base64_png(image: np.ndarray) -> str:
-    """A picture (H, W, 3) uint8, blue, green, red, as the text of a PNG file."""
-    return base64.b64encode(cv2.imencode(".png", image)[1].tobytes()).decode("ascii")
 
 
 # Charts as SVG: bars, curves and levels over common axes.
@@ -114,8 +112,7 @@ class Chart:
         self.height = height
         self.x0, self.x1 = _nonzero_range(x_range)
         self.y0, self.y1 = _nonzero_range(y_range)
-        self.parts: list[str] = []
-        self.levels: list[float] = []
+        self.parts: list[tuple[Any, ...]] = []   # (bar, curve or level; where, px; colour; text; width, px)
         self.labels = x_label, y_label
 
     def _x(self, x):
@@ -135,8 +132,7 @@ class Chart:
         for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):
             if np.isfinite(high) and high != low:
                 top, foot = sorted((float(self._y(high)), float(self._y(low))))
-                self.parts.append(f'<rect x="{a:.1f}" y="{top:.1f}" width="{max(b - a - 0.6, 0.6):.1f}" height="{foot - top:.1f}" '
-                                  f'fill="{colour}">{_title(title)}</rect>')
+                self.parts.append(("bar", (a, top, max(b - a - 0.6, 0.6), foot - top), colour, title, 0))
         return np.nan_to_num(values) + base
 
     def curve(self, x: np.ndarray, y: np.ndarray, colour: str, title: str = "", width: float = 1.6) -> None:
@@ -145,18 +141,13 @@ class Chart:
         rows = np.flatnonzero(finite)
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             if len(run):
-                points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
-                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
-                                  f'clip-path="url(#plot{self.height})">{_title(title)}</polyline>')
+                self.parts.append(("curve", list(zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run]))), colour, title, width))
 
     def level(self, y: float, colour: str, label: str = "") -> None:
         """Draw a dashed line across the plot, with its label unless that would lie over another one."""
         pixel = float(self._y(y))
-        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{pixel:.1f}" y2="{pixel:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
-        if label and all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for drawn in self.levels):
-            self.levels.append(pixel)
-            self.parts.append(f'<text x="{PLOT_END - 4}" y="{pixel - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
-                              f'{html.escape(label)}</text>')
+        free = all(abs(pixel - drawn) > MIN_LABEL_DISTANCE for kind, drawn, _, text, _ in self.parts if kind == "level" and text)
+        self.parts.append(("level", pixel, colour, label if free else "", 0))
 
     def svg(self) -> str:
         """The chart as an SVG element."""
@@ -175,10 +166,6 @@ def ticks(low: float, high: float, count: int) -> np.ndarray:
 def _nonzero_range(pair):
     low, high = float(pair[0]), float(pair[1])
     return (low, high) if high > low else (low - 0.5, low + 0.5)
-
-
-def _title(text):
-    return f"<title>{html.escape(text)}</title>" if text else ""
 
 
 # A small map as a picture: a grey raster with lines and polygons over it.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...core.common.texts import tr
-from ...core.io.crs import horizontal_part, parse_crs
+from ...core.io.crs import crs_name
 from ...core.lazy import cv2
 from ...core.survey.estimation.estimate import WAYS, EstimatedTrajectory
 from ..inspection import Inspection
@@ -38,7 +38,7 @@ def inspection_report(inspection: Inspection) -> str:
     quantiles = [int(np.searchsorted(np.cumsum(inspection.intensity) / inspection.count, q)) for q in (0.01, 0.5, 0.99)]
     histogram = _histogram(inspection.intensity, quantiles[0], quantiles[2]) if len(values) > 1 else ""
     return html_page(
-        "inspection", inspection=inspection, notes=inspection.notes, crs_name=_crs_name, size=inspection.maximum - inspection.minimum,
+        "inspection", inspection=inspection, notes=inspection.notes, crs_name=crs_name, size=inspection.maximum - inspection.minimum,
         density=_density_picture(inspection), profile=profile, start=start and f"{start:%Y-%m-%d %H:%M:%S}",
         driven=None if track is None else float(np.hypot(np.diff(track.x), np.diff(track.y)).sum()),
         intensity=dict(lowest=values[0], highest=values[-1], number=len(values), quantiles=quantiles, chart=histogram))
@@ -70,10 +70,6 @@ def _histogram(counts, low, high):
     chart = Chart((low, high + 1), (0.0, float(frequency.max())), tr("Intensity"), "")
     chart.bars(edges[:-1], edges[1:], frequency, BAR_COLOUR)
     return chart.svg()
-
-
-def _crs_name(wkt):
-    return horizontal_part(parse_crs(wkt)).name if wkt else tr("no CRS")
 
 
 def estimated_trajectory_report(estimate: EstimatedTrajectory) -> str:

@@ -22,7 +22,7 @@ class Triangulation:
     Where a segment is no edge of the Delaunay triangulation, the triangles that it crosses make room for it. What they leave open on either
     side is filled with triangles whose circles hold no corner of it. A segment that crosses another one or passes through a vertex is left out.
 
-    vertices : (V, 3) m, no two at one place in plan
+    vertices : (V, 3) m, no two at one place in plan; segments : (S, 2) int of them; area : polygon that holds the middles of those that are kept
     faces : (F, 3) int, vertices of the triangles, counter-clockwise from above
 
     References
@@ -31,7 +31,7 @@ class Triangulation:
     Delaunay triangulation is Qhull's.
     """
 
-    def __init__(self, vertices: np.ndarray, segments: np.ndarray):
+    def __init__(self, vertices: np.ndarray, segments: np.ndarray, area: shapely.Geometry | None = None):
         self.vertices = vertices
         self._middle = vertices[:, :2].mean(axis=0)
         plan = vertices[:, :2] - self._middle
@@ -50,16 +50,12 @@ class Triangulation:
         self._faces[turned] = self._faces[turned][:, ::-1]
         self._tree = shapely.STRtree(shapely.polygons(plan[added]) if len(added) else [])
         self.kept = np.r_[~self._crossed, np.ones(len(added), bool)]
+        if area is not None:
+            self.kept &= shapely.contains_xy(area, *vertices[self._faces, :2].mean(axis=1).T)
 
     @property
     def faces(self) -> np.ndarray:
         return self._faces[self.kept]
-
-    def keep_within(self, area: shapely.Geometry) -> None:
-        """Leave out the triangles whose middle lies outside of a polygon."""
-        shapely.prepare(area)
-        x, y = self.vertices[self._faces, :2].mean(axis=1).T
-        self.kept &= shapely.contains_xy(area, x, y)
 
     def locate(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) numbers of the triangles in which (N,) places lie, -1 outside: those of all that there were, before any was left out."""
@@ -192,12 +188,12 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
     Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
     """
     vertices, last, limit = fixed, 2 * tolerance, np.inf
+    shapely.prepare(area)
     x, y, z = cells.T
     along = shapely.get_coordinates(shapely.segmentize(shapely.linestrings(fixed[segments][:, :, :2]), NEAREST_VERTICES / 2))
     free = cKDTree(along).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES / 2)[0] == np.inf
     for turn in range(MOST_ROUNDS):
-        surface = Triangulation(vertices, segments)
-        surface.keep_within(area)
+        surface = Triangulation(vertices, segments, area)
         number = surface.locate(x, y)
         miss = np.abs(np.nan_to_num(surface.heights(x, y, number) - z))
         free &= cKDTree(vertices[:, :2]).query(cells[:, :2], distance_upper_bound=NEAREST_VERTICES)[0] == np.inf

@@ -163,7 +163,7 @@
     <rules key="{5b0f8f0c-61a3-4a35-9b0e-0a86d4f3f6c1}">
       <rule key="{0f3b4a54-8a0b-4e0f-8a39-5d3f0a7c9d52}" filter="coalesce(&quot;why&quot;, '') &lt;> ''" scalemaxdenom="600">
         <settings calloutType="simple">
-          <text-style isExpression="1" fontFamily="Noto Sans" fontSize="6" fontSizeUnit="Point" textColor="176,0,32,255" textOpacity="1" fieldName="concat(format_number(coalesce(attribute('station_m'), attribute('station_ft')), 0), ': ', regexp_replace(&quot;why&quot;, ' \\[[^\\]]*\\]', ''))">
+          <text-style isExpression="1" fontSize="6" fontSizeUnit="Point" textColor="176,0,32,255" textOpacity="1" fieldName="concat(format_number(coalesce(attribute('station_m'), attribute('station_ft')), 0), ': ', regexp_replace(&quot;why&quot;, ' \\[[^\\]]*\\]', ''))">
             <text-buffer bufferDraw="1" bufferSize="0.8" bufferSizeUnits="MM" bufferColor="255,255,255,255" bufferOpacity="1"/>
           </text-style>
           <placement placement="4" overlapHandling="PreventOverlap" priority="5"/>

@@ -33,9 +33,9 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="1.4" type="QString" name="size"/>
-            <Option value="3x:0,0,0,0,0,0" type="QString" name="size_map_unit_scale"/>
-            <Option value="MM" type="QString" name="size_unit"/>
+            <Option value="0.3" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
           <data_defined_properties>
@@ -72,9 +72,9 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="1.4" type="QString" name="size"/>
-            <Option value="3x:0,0,0,0,0,0" type="QString" name="size_map_unit_scale"/>
-            <Option value="MM" type="QString" name="size_unit"/>
+            <Option value="0.3" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
           <data_defined_properties>
@@ -111,9 +111,9 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="1.4" type="QString" name="size"/>
-            <Option value="3x:0,0,0,0,0,0" type="QString" name="size_map_unit_scale"/>
-            <Option value="MM" type="QString" name="size_unit"/>
+            <Option value="0.3" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
           <data_defined_properties>
@@ -150,9 +150,9 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="1.4" type="QString" name="size"/>
-            <Option value="3x:0,0,0,0,0,0" type="QString" name="size_map_unit_scale"/>
-            <Option value="MM" type="QString" name="size_unit"/>
+            <Option value="0.3" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
           <data_defined_properties>

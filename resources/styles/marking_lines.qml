@@ -177,7 +177,7 @@
       <Option value="MM" name="dash_pattern_offset_unit" type="QString"/>
       <Option value="0" name="draw_inside_polygon" type="QString"/>
       <Option value="round" name="joinstyle" type="QString"/>
-      <Option value="242,201,76,255,rgb:0.94901960784313721,0.78823529411764703,0.29803921568627451,1" name="line_color" type="QString"/>
+      <Option value="255,255,255,150,rgb:1,1,1,0.58823529411764708" name="line_color" type="QString"/>
       <Option value="solid" name="line_style" type="QString"/>
       <Option value="0.2" name="line_width" type="QString"/>
       <Option value="MM" name="line_width_unit" type="QString"/>

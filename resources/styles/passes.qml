@@ -147,7 +147,7 @@
         <Option type="QString" name="angle" value="0"/>
         <Option type="QString" name="chr" value="0"/>
         <Option type="QString" name="color" value="255,255,255,255,rgb:1,1,1,1"/>
-        <Option type="QString" name="font" value="Noto Sans"/>
+        <Option type="QString" name="font" value="Open Sans"/>
         <Option type="QString" name="font_style" value=""/>
         <Option type="QString" name="horizontal_anchor_point" value="1"/>
         <Option type="QString" name="joinstyle" value="miter"/>
@@ -187,7 +187,7 @@
         <Option type="QString" name="angle" value="0"/>
         <Option type="QString" name="chr" value="0"/>
         <Option type="QString" name="color" value="122,31,61,255,rgb:0.47843137254901963,0.12156862745098039,0.23921568627450981,1"/>
-        <Option type="QString" name="font" value="Noto Sans"/>
+        <Option type="QString" name="font" value="Open Sans"/>
         <Option type="QString" name="font_style" value=""/>
         <Option type="QString" name="horizontal_anchor_point" value="1"/>
         <Option type="QString" name="joinstyle" value="miter"/>

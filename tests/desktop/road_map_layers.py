@@ -4,10 +4,9 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from lanewright.algorithms.provenance import Provenance
-from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.results.attributes import explain_attributes
-from lanewright.processing_provider.results.layer_tree import place_layer
-from lanewright.processing_provider.results.runs import Run
+from lanewright.processing_provider.call import qgis_fields
+from lanewright.processing_provider.results.road_maps import Run, place_layer
+from lanewright.processing_provider.styling import explain_attributes
 from qgis.core import QgsFeature, QgsGeometry, QgsVectorFileWriter, QgsVectorLayer
 
 EAST, NORTH = 500_000.0, 5_400_000.0

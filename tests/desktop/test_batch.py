@@ -5,8 +5,7 @@ import shutil
 import pytest
 from copc_files import write_vpc
 from lanewright.desktop.dialogs.algorithm_dialog import BatchAlgorithmDialog, surveys_in
-from lanewright.processing_provider.results.road_maps import road_maps
-from lanewright.processing_provider.results.runs import run_table
+from lanewright.processing_provider.results.road_maps import road_maps, run_table
 from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
 

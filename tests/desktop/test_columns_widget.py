@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.desktop.trajectory_widget import ColumnsWidget, ColumnsWrapper
+from lanewright.desktop.survey_widgets import ColumnsWidget, ColumnsWrapper
 from qgis.core import QgsApplication
 
 

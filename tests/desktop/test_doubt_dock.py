@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
-from lanewright.core.survey.las import near
+from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import smart_pick
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
-from lanewright.processing_provider.layers import QgisSource
-from lanewright.processing_provider.results.attributes import second_reading
+from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
+from lanewright.processing_provider.styling import second_reading
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
@@ -302,7 +302,7 @@ def over_points(at_first, tmp_path, monkeypatch):
     random = np.random.default_rng(1)
     x, y = EAST + random.uniform(0, 60, 60_000), NORTH + random.uniform(0, 8, 60_000)
     points = np.c_[x, y, 100 + np.where(y > NORTH + 5, 0.12, 0.0) + random.normal(0, 0.004, len(x)), np.full(len(x), 100.0)]
-    monkeypatch.setattr(near, "points_near", lambda clouds, x, y, radius, progress: points[
+    monkeypatch.setattr(parallel_reader, "points_near", lambda clouds, x, y, radius, progress: points[
         (np.abs(points[:, :2] - (x, y)) <= radius).all(axis=1)])
     added(project, "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (0 5 100, 20 5 100)", dict(road=0, side="left", status="measured", length_m=20.0)))
     at_first.go(road_maps(project)[0])

@@ -9,9 +9,8 @@ from lanewright.core.common.texts import RoadPlace, places_in
 from lanewright.core.corrections.corrections import Correction
 from lanewright.core.road.surface.extract import ThinMargin, said_of_thin
 from lanewright.desktop.review.doubtful import doubts_of
-from lanewright.processing_provider.results.attributes import second_reading
-from lanewright.processing_provider.results.road_maps import road_maps
-from lanewright.processing_provider.results.runs import Run
+from lanewright.processing_provider.results.road_maps import Run, road_maps
+from lanewright.processing_provider.styling import second_reading
 from road_map_layers import EAST, NORTH, added, run_at
 
 WARNING = ("The points are too few to find curbs along 30 m, where none was drawn (road 0, left side, station 60 to 80 m; road 0, right side, "

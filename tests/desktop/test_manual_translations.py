@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.algorithms.texts import TRANSLATIONS
-from lanewright.desktop.manual import PAGES, page_path
+from lanewright.desktop.menu import PAGES, page_path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))

@@ -7,7 +7,7 @@ import pytest
 from lanewright.desktop import widgets as messages
 from lanewright.desktop.menu import RunsWindow
 from lanewright.desktop.widgets import tell_result
-from lanewright.processing_provider.results import runs as run_table
+from lanewright.processing_provider.results import road_maps as run_table
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMessageBar, QgsMessageViewer
 from qgis.PyQt.QtWidgets import QMainWindow, QPushButton, QTextEdit

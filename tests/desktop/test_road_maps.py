@@ -2,12 +2,12 @@
 
 import pytest
 from lanewright.algorithms.provenance import Provenance, provenance_now
-from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES
+from lanewright.core.common.features import DRIVING_LINES, MARKING_LINES, ROAD_EDGES, ROAD_SURFACE
 from lanewright.desktop.review.doubtful import doubts_of
 from lanewright.desktop.review.section import section_at
-from lanewright.processing_provider.results.road_maps import clouds_lie_in, clouds_of, road_map_of, road_maps, runs_of
+from lanewright.processing_provider.results.road_maps import clouds_lie_in, clouds_of, place_layer, road_map_of, road_maps, runs_of
 from lanewright.processing_provider.styling import embed_style
-from qgis.core import QgsVectorFileWriter, QgsVectorLayer
+from qgis.core import QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer
 from road_map_layers import CLOUDS, EAST, NORTH, added, run_at
 
 BRIDGED = ("LINESTRING Z (10 0 100, 30 0 100)", dict(road=0, station_m=10.0, length_m=20.0, side="left", status="bridged"))
@@ -94,6 +94,25 @@ def test_the_old_map_of_a_survey_is_hidden_when_it_is_made_again_and_maps_of_oth
         added(project, "DRIVING_LINES", DRIVING_LINES, lane, run=run)
     seen = {group.name(): group.itemVisibilityChecked() for group in project.layerTreeRoot().findGroups()}
     assert seen == {"B13, 7:00": True, "B12, 8:00": False, "B12, 9:00": True}
+
+
+def test_the_image_below_the_asphalt_is_off_until_it_is_wanted(project):
+    """Of it the plan would show a dark fringe; alone it is shown."""
+    def image(run):
+        layer = QgsRasterLayer("MEM:::", "Intensity image")
+        project.addMapLayer(layer, False)
+        group = project.layerTreeRoot().findGroup(run.group) or project.layerTreeRoot().addGroup(run.group)
+        group.addLayer(layer)
+        place_layer(layer, project, "INTENSITY_IMAGE", run)
+        return project.layerTreeRoot().findLayer(layer.id())
+
+    ground = ("POLYGON Z ((0 0 100, 40 0 100, 40 7 100, 0 7 100, 0 0 100))", dict(road=0))
+    alone, before = image(run_at(7, ["/data/B13/a.laz"], "B13")), image(run_at(8))
+    added(project, "ROAD_SURFACE", ROAD_SURFACE, ground)
+    assert alone.itemVisibilityChecked() and not before.itemVisibilityChecked()
+    before.setItemVisibilityChecked(True)
+    added(project, "ROAD_EDGES", ROAD_EDGES, BRIDGED)
+    assert before.itemVisibilityChecked(), "who has switched it on keeps it"
 
 
 def test_it_can_be_made_again_from_all_that_it_was_made_from(project):

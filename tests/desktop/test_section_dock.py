@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from lanewright.core.common.features import DRIVING_LINES
-from lanewright.core.survey.las import near
+from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import section_dock
 from qgis.core import QgsPointXY, QgsProject
 from qgis.gui import QgsMapCanvas
@@ -29,7 +29,7 @@ def dock(project, monkeypatch, tmp_path):
             progress.check_cancelled()
         return np.array([[x, y + across, 100.0, 7.0] for across in (-2.0, 0.0, 2.0)])
 
-    monkeypatch.setattr(near, "points_near", points_near)
+    monkeypatch.setattr(parallel_reader, "points_near", points_near)
     main = QMainWindow()
     canvas = QgsMapCanvas(main)
     canvas.setDestinationCrs(next(iter(project.mapLayers().values())).crs())

@@ -15,11 +15,11 @@ from lanewright.core.common.features import CROSS_SECTIONS, DRIVING_LINES, MARKI
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.texts import language
 from lanewright.desktop.layout.axes import OVERLAP, accuracy_of, axes_of, lines_of, road_line, road_lines, sheets_along
-from lanewright.desktop.layout.charts import profile_pages, section_pages
+from lanewright.desktop.layout.drawing import profile_pages, section_pages
 from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_layout, unused_name, write_pdf
 from lanewright.desktop.menu import credit_of, sheet_values, shown_layers
-from lanewright.processing_provider.results.attributes import explain_attributes
 from lanewright.processing_provider.results.road_maps import road_maps
+from lanewright.processing_provider.styling import LOOKS, STYLES, apply_style, explain_attributes
 from qgis import processing
 from qgis.core import (
     Qgis,
@@ -38,6 +38,7 @@ from qgis.core import (
     QgsLayoutItemPage,
     QgsLayoutItemPicture,
     QgsLineSymbol,
+    QgsMapLayerLegendUtils,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
@@ -450,10 +451,18 @@ def test_markup_in_a_field_is_shown_as_it_stands_in_a_map_tip(project):
 PLAN = SheetSettings("A street", profile=False, section_interval=0.0)
 
 
-def test_white_paint_is_seen_in_the_legend(project):
-    layout, _ = made(project, street(project))
-    legend = item(layout, QgsLayoutItemLegend)
-    assert legend.hasBackground() and legend.backgroundColor().lightness() < 220
+def test_white_paint_lies_on_asphalt_in_the_legend_and_other_symbols_on_paper(project):
+    paint = ("LINESTRING Z (0 5 100, 100 5 102)", dict(road=0, pattern="solid", status="measured", width_m=0.12))
+    layers = {"ROAD_EDGES": street(project), "MARKING_LINES": added(project, "MARKING_LINES", MARKING_LINES, paint)}
+    for name, layer in layers.items():
+        apply_style(layer, STYLES / f"{LOOKS[name][0]}.qml")
+    layout, _ = sheet_layout(project, layers, PLAN)
+    model = item(layout, QgsLayoutItemLegend).model()
+    grounds = {}
+    for node in model.rootGroup().findLayers():
+        shown = [QgsMapLayerLegendUtils.legendNodeCustomSymbol(node, row) for row, _ in enumerate(model.layerOriginalLegendNodes(node))]
+        grounds[node.layer().name()] = {symbol.symbolLayer(0).color().name() for symbol in shown}
+    assert grounds["MARKING_LINES"] == {"#8d9299"} and "#8d9299" not in grounds["ROAD_EDGES"], grounds
 
 
 def classes(project, name, values, width=14, attribute="kind"):

@@ -7,7 +7,7 @@ from lanewright.core.common.features import CORRECTIONS, DRIVING_LINES, MARKING_
 from lanewright.desktop.dialogs.stage_inputs import layer_lists, stage_again
 from lanewright.desktop.review.corrections_layer import new_corrections_layer
 from lanewright.processing_provider.algorithm import group_of_layers
-from lanewright.processing_provider.results.runs import run_of
+from lanewright.processing_provider.results.road_maps import run_of
 from qgis.core import QgsApplication, QgsProcessingContext, QgsVectorLayer
 from road_map_layers import added, run_at
 

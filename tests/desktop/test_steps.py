@@ -7,8 +7,7 @@ from lanewright.core.common.features import DRIVING_LINES, LANES, MARKING_LINES,
 from lanewright.desktop.review.corrections_layer import add_correction, new_corrections_layer, take_back
 from lanewright.desktop.review.doubt_dock import ARRIVED
 from lanewright.desktop.review.steps import steps_of, values_again
-from lanewright.processing_provider.results.layer_tree import place_layer
-from lanewright.processing_provider.results.road_maps import road_maps
+from lanewright.processing_provider.results.road_maps import place_layer, road_maps
 from qgis import utils
 from qgis.core import QgsGeometry, QgsProject
 from qgis.PyQt.QtCore import Qt

@@ -2,10 +2,9 @@
 
 import pytest
 from copc_files import write_vpc
-from lanewright.algorithms.survey_files import cloud_files
+from lanewright.algorithms.survey_input import cloud_files
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
-from lanewright.desktop.trajectory_widget import TrajectoryWrapper, trajectory_beside
+from lanewright.desktop.survey_widgets import PointCloudsWidget, PointCloudsWrapper, TrajectoryWrapper, described, dropped_clouds, trajectory_beside
 from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsVectorLayer
 from qgis.gui import QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtCore import QMimeData, QUrl
@@ -221,6 +220,14 @@ def test_the_trajectory_beside_the_point_clouds_is_offered_and_one_that_was_chos
     assert not wrappers["TRAJECTORY"].parameterValue(), "it is not that of another survey"
     dialog.setParameters({"TRAJECTORY": str(surveyed / "notes.txt"), "POINT_CLOUDS": [str(surveyed / "s.laz")]})
     assert wrappers["TRAJECTORY"].parameterValue() == str(surveyed / "notes.txt")
+
+
+def test_a_trajectory_in_two_dresses_is_one_and_two_drives_are_none(surveyed, project):
+    clouds, rows = [str(surveyed / "s.laz")], (surveyed / "drive.csv").read_text().splitlines()
+    (surveyed / "export.txt").write_text("\n".join(row.replace(",", ";") for row in rows))
+    assert trajectory_beside(clouds) == str(surveyed / "drive.csv")
+    (surveyed / "back.txt").write_text("\n".join(rows[:1] + rows[:0:-1]))
+    assert trajectory_beside(clouds) == ""
 
 
 def test_points_extent_crs_and_time_of_the_clouds_are_said(surveyed):

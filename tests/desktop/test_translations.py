@@ -90,7 +90,7 @@ def test_every_choice_of_a_dialog_has_a_word_in_german_or_is_a_name():
 
 def test_a_choice_reads_german_and_keeps_its_value(german, provider, monkeypatch):
     from lanewright.algorithms.driving import RoadMap
-    from lanewright.desktop.dialog_wrapper import ChoiceWrapper
+    from lanewright.desktop.survey_widgets import ChoiceWrapper
     from lanewright.processing_provider.algorithm import qgis_parameter
     from processing.gui import ParametersPanel
     from processing.gui.AlgorithmDialog import AlgorithmDialog

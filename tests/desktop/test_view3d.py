@@ -2,14 +2,17 @@
 
 from types import SimpleNamespace
 
+import laspy
 import numpy as np
 import pytest
 from lanewright.core.common.features import DRIVING_LINES, MARKINGS, ROAD_EDGES
-from lanewright.desktop.view3d import give_3d_looks, show_in_3d
+from lanewright.desktop.view3d import TASKS, give_3d_looks, show_in_3d
 from lanewright.processing_provider.results.road_maps import road_maps
 from qgis._3d import Qgs3DMapSettings, QgsLine3DSymbol, QgsVectorLayer3DRenderer
 from qgis.core import Qgis, QgsProject, QgsProviderRegistry, QgsRectangle
 from qgis.gui import QgsMapCanvas
+from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtTest import QTest
 from road_map_layers import EAST, NORTH, added, run_at
 
 
@@ -63,8 +66,31 @@ def test_the_camera_looks_at_the_road_in_the_middle_of_the_map_window(road_map):
 
 
 @pytest.mark.skipif("copc" not in QgsProviderRegistry.instance().providerList(), reason="this QGIS shows no COPC")
+@pytest.mark.parametrize("far", [0.0, 1000.0])
+def test_points_of_laz_files_come_as_soon_as_they_are_read_and_only_those_about_the_place(project, tmp_path, far):
+    cloud = laspy.create(point_format=1, file_version="1.2")
+    cloud.x, cloud.y, cloud.z = EAST + far + np.arange(1000) / 5, NORTH + np.zeros(1000), np.full(1000, 100.0)
+    cloud.intensity = np.arange(1000)
+    cloud.write(tmp_path / "street.laz")
+    added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 200 0 100)", dict(lane=1, direction=1)),
+          run=run_at(8, POINT_CLOUDS=[str(tmp_path / "street.laz")]))
+    canvas, settings = QgsMapCanvas(), Qgs3DMapSettings()
+    crs = project.mapLayersByName("DRIVING_LINES")[0].crs()
+    canvas.setDestinationCrs(crs)
+    canvas.setExtent(QgsRectangle(EAST - 10, NORTH - 10, EAST + 10, NORTH + 10))
+    view = QObject()
+    view.mapSettings, view.cameraController = lambda: settings, lambda: SimpleNamespace(setLookingAtPoint=lambda *values: None)
+    assert show_in_3d(SimpleNamespace(mapCanvas=lambda: canvas, createNewMapCanvas3D=lambda name: view), road_maps(project)[0], "road")
+    for _ in range(1500):
+        QTest.qWait(20)
+        if not TASKS:
+            break
+    points = [layer for layer in settings.layers() if layer.type() == Qgis.LayerType.PointCloud]
+    assert [(layer.isValid(), layer.pointCount(), layer.crs()) for layer in points] == ([(True, 401, crs)] if not far else [])
+
+
+@pytest.mark.skipif("copc" not in QgsProviderRegistry.instance().providerList(), reason="this QGIS shows no COPC")
 def test_points_of_the_survey_come_with_the_view_once_where_qgis_can_show_them(project, tmp_path):
-    import laspy
     from copc_files import write_copc
 
     cloud = laspy.create(point_format=6, file_version="1.4")

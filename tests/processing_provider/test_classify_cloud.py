@@ -164,14 +164,27 @@ def test_the_unrolled_road_is_straight_and_level_where_it_was_driven(mapped, tmp
     assert laid.header.parse_crs() is None
 
 
-def test_an_octree_becomes_a_plain_file_of_the_same_points(mapped, tmp_path):
+def test_an_octree_stays_one_and_a_plain_file_becomes_one_on_wish(mapped, tmp_path):
     from copc_files import write_copc
+    from qgis.core import QgsPointCloudLayer
 
-    copc = write_copc(mapped[0]["POINT_CLOUDS"][0], tmp_path / "s.copc.laz", in_a_node=20_000)
-    classified(mapped, tmp_path / "out", POINT_CLOUDS=[copc])
-    after = laspy.read(tmp_path / "out" / "s.laz")
-    same_points(laspy.read(copc), after)
-    assert not [record for record in [*after.header.vlrs, *(after.header.evlrs or ())] if record.user_id == "copc"]
+    plain = written(mapped[0]["POINT_CLOUDS"][0], tmp_path / "s.laz", 6)
+    octree = write_copc(plain, tmp_path / "t.copc.laz")
+    classified(mapped, tmp_path / "plain", POINT_CLOUDS=[plain])
+    expected = laspy.read(tmp_path / "plain" / "s.laz")
+    for cloud, name, more in ((octree, "t.copc.laz", {}), (plain, "s.copc.laz", {"COPC": True, "UNROLLED": str(tmp_path / "unrolled")})):
+        classified(mapped, tmp_path / "out", POINT_CLOUDS=[cloud], **more)
+        path = tmp_path / "out" / name
+        assert QgsPointCloudLayer(str(path), "", "copc").isValid()
+        with laspy.CopcReader.open(path) as reader:
+            points, coarse = reader.query(), reader.query(level=0)
+        assert 0 < len(coarse) < len(points) == len(expected)
+        assert np.ptp(coarse.x) > 0.9 * np.ptp(points.x) and np.ptp(coarse.y) > 0.9 * np.ptp(points.y)
+        before, after = (np.sort(np.rec.fromarrays([np.asarray(cloud[name]) for name in ("X", "Y", "Z", "gps_time", "classification", "road")]))
+                         for cloud in (expected, points))
+        np.testing.assert_array_equal(after, before)
+        assert laspy.open(path).header.parse_crs() == expected.header.parse_crs()
+    assert [path.name for path in (tmp_path / "unrolled").iterdir()] == ["s.copc.laz"]
 
 
 def test_inputs_are_not_written_over_and_a_failed_run_leaves_nothing(mapped, tmp_path):

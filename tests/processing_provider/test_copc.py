@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from lanewright.algorithms.survey_files import cloud_files
+from lanewright.algorithms.survey_input import cloud_files
 from qgis.core import QgsPointCloudLayer, QgsProviderRegistry, QgsVectorLayer
 
 

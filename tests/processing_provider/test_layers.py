@@ -6,11 +6,11 @@ from contextlib import closing
 import numpy as np
 import pytest
 import shapely
-from lanewright.algorithms.survey_files import read_trajectory_source
+from lanewright.algorithms.survey_input import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features, vertices_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.features import CURVE_ELEMENTS, ROAD_EDGES, Features
-from lanewright.processing_provider.layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
+from lanewright.processing_provider.call import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 
 UTM = QgsCoordinateReferenceSystem("EPSG:32650")

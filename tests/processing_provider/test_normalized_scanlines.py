@@ -3,11 +3,11 @@
 import laspy
 import numpy as np
 import pytest
-from lanewright.algorithms.survey_files import read_trajectory_source
+from lanewright.algorithms.survey_input import read_trajectory_source
 from lanewright.algorithms.vector_source import read_features
 from lanewright.core.common.features import SCANLINES
 from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.processing_provider.layers import QgisSource
+from lanewright.processing_provider.call import QgisSource
 from lanewright.products.scanline_layer import scanlines_from_features
 from osgeo import ogr
 from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer

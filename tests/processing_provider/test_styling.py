@@ -21,8 +21,8 @@ from lanewright.core.common.features import (
     ROADSIDE_OBJECTS,
 )
 from lanewright.core.driving.layers import LANE_TYPES
-from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.results.runs import Run
+from lanewright.processing_provider.call import qgis_fields
+from lanewright.processing_provider.results.road_maps import Run
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, style_on_load
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
@@ -78,7 +78,7 @@ def test_a_style_looks_at_fields_that_the_layer_has(qgis_app, name):
     assert used and used <= {field.name() for field in layer.fields()}
 
 
-@pytest.mark.parametrize("name", [name for name in KINDS if name != "MARKING_LINES"])
+@pytest.mark.parametrize("name", [name for name in KINDS if name not in ("MARKING_LINES", "MARKINGS")])
 def test_every_class_of_a_style_is_drawn_and_in_the_legend(qgis_app, name):
     """QGIS passes over a class whose symbol another has taken."""
     path = STYLES / f"{LOOKS[name][0]}.qml"
@@ -167,8 +167,7 @@ def test_a_ragged_arrow_is_drawn_as_the_sign_it_is(qgis_app, sign, left, right, 
     ragged = QgsGeometry.unaryUnion([QgsGeometry.fromRect(QgsRectangle(x, y, x + 0.05, y + 0.05)) for x in np.arange(-1.2, 1.2, 0.05)
                                      for y in np.arange(-0.2, 4.8, 0.05) if clean.contains(QgsPointXY(x + 0.025, y + 0.025))])
     ragged.rotate(turned, QgsPointXY(0, 0))
-    arrow = next(drawn.symbol().clone() for drawn in layer.renderer().categories() if drawn.value() == "arrow")
-    shape = drawn_by(layer, arrow, ragged, 500, **{"class": "arrow"})
+    shape = drawn_by(layer, layer.renderer().symbol().clone(), ragged, 500, **{"class": "arrow"})
     shape.rotate(-turned, QgsPointXY(0, 0))
     assert shape.intersection(clean).area() > 0.6 * shape.combine(clean).area()
     box = shape.boundingBox()
@@ -180,8 +179,9 @@ def test_paint_that_is_no_whole_arrow_keeps_its_outline(qgis_app):
     layer = layer_of("Polygon", MARKINGS)
     apply_style(layer, STYLES / "markings.qml")
     rest = QgsGeometry.fromWkt("POLYGON((0 0, 0.1 0, 0.1 2, 1 2, 1 0, 1.1 0, 1.1 2.1, 0 2.1, 0 0))")
-    shapes = {drawn.value(): drawn_by(layer, drawn.symbol().clone(), rest, 500) for drawn in layer.renderer().categories()}
-    assert shapes["arrow"].equals(shapes["symbol"])
+    arrow, symbol = (drawn_by(layer_of("Polygon", MARKINGS), layer.renderer().symbol().clone(), rest, 500, **{"class": name})
+                     for name in ("arrow", "symbol"))
+    assert arrow.equals(symbol)
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -192,6 +192,32 @@ def test_stations_stand_where_they_are_along_the_road(qgis_app, direction):
     line = QgsGeometry.fromWkt("LINESTRING(0 0, 0 64)" if direction == 1 else "LINESTRING(0 64, 0 0)")
     ticks = drawn_by(layer, layer.renderer().symbol().clone(), line, 250, road=0, direction=direction, station_m=13.0, end_m=77.0)
     assert sorted(round(tick.centroid().asPoint().y() + 13) for tick in ticks.asGeometryCollection()) == [20, 30, 40, 50, 60, 70]
+
+
+@pytest.mark.parametrize("scale, values, text", [
+    (500, dict(width_m=3.4, length_m=40.0), "3.40"), (1000, dict(width_m=3.4, length_m=40.0), ""), (500, dict(width_m=3.4, length_m=5.0), ""),
+    (500, dict(width_m=3.4, length_m=40.0, radius_m=84.8, design_kmh=50), "3.40 · R 84.8 · 50 km/h"),
+    (1000, dict(width_m=3.4, length_m=40.0, radius_m=240.2), "R 240")])
+def test_a_driving_line_says_how_wide_its_lane_is_and_how_tight_its_curve(qgis_app, scale, values, text):
+    layer = layer_of("LineStringZ", DRIVING_LINES)
+    apply_style(layer, STYLES / "driving_lines.qml")
+    feature = QgsFeature(layer.fields())
+    for name, value in values.items():
+        feature[name] = value
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(feature)
+    context.lastScope().setVariable("map_scale", scale)
+    label = QgsExpression(layer.labeling().rootRule().children()[0].settings().fieldName)
+    assert (label.evaluate(context) or "") == text and not label.hasEvalError()
+
+
+def test_a_road_plan_has_one_grey_and_yellow_is_paint_alone(qgis_app):
+    """What was measured and what not is told by the style By status: on a plan patches of another grey, and yellow dashes, mean something else."""
+    surface, lines = layer_of("PolygonZ", ROAD_SURFACE), layer_of("LineStringZ", MARKING_LINES)
+    apply_style(surface, STYLES / "road_surface.qml")
+    apply_style(lines, STYLES / "marking_lines.qml")
+    assert len(surface.renderer().symbols(QgsRenderContext())) == 1
+    assert {part.color().hsvSaturation() < 30 for symbol in lines.renderer().symbols(QgsRenderContext()) for part in symbol.symbolLayers()} == {True}
 
 
 def test_by_class_every_type_of_lane_has_a_look_of_its_own(qgis_app):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.algorithms.survey_files import read_trajectory_source, trajectory_features, trajectory_path
+from lanewright.algorithms.survey_input import read_trajectory_source, trajectory_features, trajectory_path
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.processing_provider.layers import QgisSource
+from lanewright.processing_provider.call import QgisSource
 from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
 
 TIME = 1000.0 + 0.1 * np.arange(60)

@@ -135,9 +135,9 @@ def _has_partner(column, line):
     rows = np.flatnonzero(line)
     result = np.zeros(len(line), bool)
     s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
-    for a, b in overlapping_pairs(s0, s1, s0, s1):
-        overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
-        result[rows[a[(a != b) & (np.abs(d[a] - d[b]) <= CLASSES.max_double_line_spacing) & (overlap > 0.5 * (s1 - s0)[a])]]] = True
+    a, b = overlapping_pairs(s0, s1, s0, s1)
+    overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
+    result[rows[a[(a != b) & (np.abs(d[a] - d[b]) <= CLASSES.max_double_line_spacing) & (overlap > 0.5 * (s1 - s0)[a])]]] = True
     return result
 
 
@@ -151,11 +151,11 @@ def _beyond_the_edge_line(column, line, clearance):
     on_edge = clearance < column["width"] / 2 + CLASSES.edge_contact
     longest = np.where(on_edge, 1.0, CLASSES.edge_line_length_ratio) * length
     reach = np.where(clearance < GROUPS.road_edge_clearance, CLASSES.strip_reach_at_road_edge, CLASSES.strip_reach_beyond_edge_line)
-    for a, b in overlapping_pairs(s0[rows], s1[rows], s0[lines], s1[lines]):
-        a, b = rows[a], lines[b]
-        outward = np.sign(d[a]) * (d[a] - d[b])
-        overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
-        result[a[(outward > 0.1) & (outward < reach[a]) & (overlap > 0) & (length[b] > longest[a])]] = True
+    a, b = overlapping_pairs(s0[rows], s1[rows], s0[lines], s1[lines])
+    a, b = rows[a], lines[b]
+    outward = np.sign(d[a]) * (d[a] - d[b])
+    overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
+    result[a[(outward > 0.1) & (outward < reach[a]) & (overlap > 0) & (length[b] > longest[a])]] = True
     return result
 
 
@@ -164,12 +164,12 @@ def _outlines(column, kinds):
     kinds = np.array(kinds, dtype=object)
     bars, rows = np.flatnonzero(kinds == "hatch"), np.flatnonzero(kinds == "symbol")
     touched = np.zeros(len(kinds), bool)
-    for a, b in overlapping_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], CLASSES.max_bar_to_outline):
-        a, b = rows[a], bars[b]
-        touch = np.ones(len(a), bool)
-        for low, high in (("s0", "s1"), ("d0", "d1")):
-            touch &= (column[low][a] < column[high][b] + CLASSES.max_bar_to_outline) & (column[high][a] > column[low][b] - CLASSES.max_bar_to_outline)
-        touched[a[touch]] = True
+    a, b = overlapping_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], CLASSES.max_bar_to_outline)
+    a, b = rows[a], bars[b]
+    touch = np.ones(len(a), bool)
+    for low, high in (("s0", "s1"), ("d0", "d1")):
+        touch &= (column[low][a] < column[high][b] + CLASSES.max_bar_to_outline) & (column[high][a] > column[low][b] - CLASSES.max_bar_to_outline)
+    touched[a[touch]] = True
     return np.flatnonzero(touched)
 
 
@@ -178,12 +178,12 @@ def _single_bars(column, kinds):
     rows = np.flatnonzero(np.array([kind == "hatch" for kind in kinds], bool))
     first, last = column["s0"][rows], column["s1"][rows]
     single = last - first < CLASSES.min_hatching_length
-    for a, b in overlapping_pairs(first, last, first, last, CLASSES.max_hatching_pitch):
-        gap = np.zeros(len(a))
-        for low, high in (("s0", "s1"), ("d0", "d1")):
-            low, high = column[low][rows], column[high][rows]
-            gap = np.maximum(gap, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
-        single[a[(a != b) & (gap < CLASSES.max_hatching_pitch)]] = False
+    a, b = overlapping_pairs(first, last, first, last, CLASSES.max_hatching_pitch)
+    gap = np.zeros(len(a))
+    for low, high in (("s0", "s1"), ("d0", "d1")):
+        low, high = column[low][rows], column[high][rows]
+        gap = np.maximum(gap, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
+    single[a[(a != b) & (gap < CLASSES.max_hatching_pitch)]] = False
     return rows[single]
 
 

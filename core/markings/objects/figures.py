@@ -63,12 +63,9 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
 def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[list[tuple[int, ...]]]:
     """Of each group of markings that lie together those that may be a figure: all, those of them that were taken for paint, and each alone."""
     box = np.array([(shape.s0, shape.s1, shape.d0, shape.d1) for shape in shapes]).reshape(-1, 4)[parts]
-    links = [np.empty((0, 2), np.int64)]
-    for a, b in overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], FIGURES.letter_gap):
-        gap = np.maximum(box[a, 2], box[b, 2]) - np.minimum(box[a, 3], box[b, 3])
-        links.append(np.column_stack([a, b])[gap <= FIGURES.letter_gap])
-    pairs = np.concatenate(links)
-    group = linked_groups(pairs[:, 0], pairs[:, 1], len(parts))
+    a, b = overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], FIGURES.letter_gap)
+    near = np.maximum(box[a, 2], box[b, 2]) - np.minimum(box[a, 3], box[b, 3]) <= FIGURES.letter_gap
+    group = linked_groups(a[near], b[near], len(parts))
     for _, together in members_of(group):
         painted = together[[kinds[k] != NOT_PAINT for k in parts[together]]]
         tried, large = set(), []

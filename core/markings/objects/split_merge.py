@@ -239,7 +239,7 @@ def _unseen_gaps(shapes, narrow):
         return np.empty((0, 2), np.int64)
     first, last, offset = (np.array([getattr(shapes[k], name) for k in sparse]) for name in ("s0", "s1", "offset"))
     sideways = np.array([shapes[k].oblique for k in sparse]) >= COMPOUNDS.min_oblique
-    a, b = (np.concatenate(parts) for parts in zip(*overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)))
+    a, b = overlapping_pairs(first, last, first, last, COMPOUNDS.max_unseen_gap)
     gap = first[b] - last[a]
     unseen = (a != b) & (gap >= 0) & (gap <= COMPOUNDS.max_unseen_gap) & (sideways[a, 1] | sideways[b, 0])
     return sparse[np.column_stack([a, b])[unseen & (np.abs(offset[a] - offset[b]) <= COMPOUNDS.max_unseen_offset)]]

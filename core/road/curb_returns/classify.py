@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 
 from ...common.arrays import mask_runs
-from ...survey.frame.passes import Pass
 from ...survey.frame.road import Road
+from ...survey.frame.road_frame import Pass
 from ..common.curb_limits import CurbSettings
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import is_clean, is_road

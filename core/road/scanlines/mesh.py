@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.arrays import Rows
-from ...survey.frame.passes import Pass
+from ...survey.frame.road_frame import Pass
 from ...survey.lattice.scan_lattice import MirrorPhase, time_order
 from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, take_rows

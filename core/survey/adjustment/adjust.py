@@ -6,7 +6,6 @@ changes along the road and small corrections as prior. Two passes meet in their 
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -19,8 +18,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ..frame.passes import Pass
-from ..frame.road_frame import RoadFrame
+from ..frame.road_frame import Pass, RoadFrame
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
@@ -111,7 +109,7 @@ def _report_offsets(road, offsets, corrections, progress):
         separations = _separations(offsets)
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in separations)
         message = f"Road {road}: its passes lay {plan} beside and {up} above each other"
-        if max((float(v.max()) for v in separations if len(v)), default=0.0) > REGISTER.max_offset:
+        if any(np.percentile(v, 90) > REGISTER.most_drift or v.max() > REGISTER.max_offset for v in separations if len(v)):
             progress.warn(f"{message}, more than navigation drifts. Each was moved by its share, and nothing shows which is right. Process the files "
                           "of each drive by itself, or measure control points.")
         else:
@@ -309,20 +307,21 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, remain=True)}: lines may be doubled there. "
             "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
 def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) -> str:
-    return (f"Road {road}: one drive alone shows what lies at {_named_places(places, 'by up to {:.1f} cm')}. It was moved as beside the others: "
+    return (f"Road {road}: one drive alone shows what lies at {_named_places(places)}. It was moved as beside the others: "
             "measure a control point there if these centimetres matter.") if places else ""
 
 
-def _named_places(places: list[tuple[float, float, float]], size: str) -> str:
-    far = f"more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other"
-    named = (f"{start:.0f} to {end:.0f} m ({far if np.isinf(metres) else size.format(100 * metres)})" for start, end, metres in places)
-    further = len(places) - ADJUST.most_named
-    return ", ".join(itertools.islice(named, ADJUST.most_named)) + (f" and at {further} further places" if further > 0 else "")
+def _named_places(places: list[tuple[float, float, float]], remain: bool = False) -> str:
+    named = [f"{start:.0f} to {end:.0f} m (more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
+             else f"{start:.0f} to {end:.0f} m (up to {100 * metres:.1f} cm remain)" if remain
+             else f"{start:.0f} to {end:.0f} m (by up to {100 * metres:.1f} cm)" for start, end, metres in places[:ADJUST.most_named]]
+    further = len(places) - len(named)
+    return "; ".join([*named, f"and at {further} further places"] if further else named)
 
 
 # Carriageways that were driven one by one, as of a motorway: whether their drives agree on the ground between them, place by place.
@@ -434,7 +433,7 @@ def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
              f"{pair.stations.max() + REGISTER.correction_step / 2:.0f} m, and no drive measured both")
     if far.any():
         return (f"{intro}. Their drives differ in height at "
-                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(up[far]).tolist())), 'by up to {:.1f} cm')}. "
+                f"{_named_places(_stretches_of(zip(pair.stations[far].tolist(), np.abs(up[far]).tolist())))}. "
                 "They stay as measured: adjust the trajectories to each other, or measure control points on both, if these centimetres matter.", True)
     if not measured.any():
         return f"{intro}: nothing that both see shows how far they lie apart.", False

@@ -20,7 +20,7 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...lazy import cv2, laspy
-from ..frame.passes import Pass
+from ..frame.road_frame import Pass
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, Points, to_units
@@ -445,29 +445,32 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     """How far the middle of the passes over a road may be off across it, from what they differ, place by place; None where no offset was measured.
 
     Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
-    that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
+    that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken. Passes farther apart than navigation drifts
+    are two surveys, of which one may be right, so that either may be off by all that they differ.
     """
-    measured = [(pair, np.isfinite(pair.left)) for pair in offsets]
-    stations = np.concatenate([pair.stations[mask] for pair, mask in measured] or [np.empty(0)])
+    apart = [_apart(pair) for pair in offsets]
+    measured = [np.isfinite(values) for values in apart]
+    stations = np.concatenate([pair.stations[mask] for pair, mask in zip(offsets, measured)] or [np.empty(0)])
     if not len(stations):
         return None
     order = np.argsort(stations, kind="stable")
-    stations, left = stations[order], np.concatenate([_apart(pair)[mask] for pair, mask in measured])[order]
-    first_numbers, second_numbers = (np.concatenate([np.full(mask.sum(), getattr(pair, name)) for pair, mask in measured])[order]
+    stations, metres = stations[order], np.concatenate([values[mask] for values, mask in zip(apart, measured)])[order]
+    first_numbers, second_numbers = (np.concatenate([np.full(mask.sum(), getattr(pair, name)) for pair, mask in zip(offsets, measured)])[order]
                                      for name in ("one", "other"))
     places = np.unique(stations)
     bounds = np.searchsorted(stations, places - REGISTER.sigma_reach), np.searchsorted(stations, places + REGISTER.sigma_reach, side="right")
     sigmas = []
     for first, end in zip(*bounds):
-        spread = min(np.sqrt(np.mean(left[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(left[first:end])))
-        sigmas.append(spread / np.sqrt(2 * len({*first_numbers[first:end].tolist(), *second_numbers[first:end].tolist()})))
+        spread = min(np.sqrt(np.mean(metres[first:end] ** 2)), MAD_TO_SIGMA * np.median(np.abs(metres[first:end])))
+        count = len({*first_numbers[first:end].tolist(), *second_numbers[first:end].tolist()})
+        sigmas.append(spread if spread > REGISTER.most_drift else spread / np.sqrt(2 * count))
     return SigmaAlong(tuple(places.tolist()), tuple(map(float, sigmas)))
 
 
 def _apart(pair):
-    """(N,) m across that two passes lie apart; in any direction where it is more than drift, as roads that cross are off along this one too."""
-    anywhere = np.hypot(pair.left, np.nan_to_num(pair.along))
-    return np.where(anywhere > REGISTER.max_offset, anywhere, pair.left)
+    """(N,) m across that two passes lie apart, NaN where unknown; in any direction where it is more than drift, as of another datum."""
+    anywhere = np.linalg.norm(np.nan_to_num([pair.left, pair.along, pair.up]), axis=0)
+    return np.where(anywhere > REGISTER.most_drift, anywhere, pair.left)
 
 
 def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[Any]:

@@ -16,12 +16,11 @@ from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
 from ..estimation.samples import SAMPLED_LAYERS
 from ..las.parallel_reader import ParallelCloudReader
-from ..las.point_fields import first_returns, scanners_of
+from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
-from ..trajectory.shape import shaped_trajectory
-from ..trajectory.trajectory import Trajectory, clean_trajectory
-from ..weights import ADJUST, FRAME, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
+from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
+from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
 
 
 @dataclass(frozen=True)
@@ -50,19 +49,18 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
+    if not mountings and len(np.unique(sample.source)) <= LAS.max_scanners:   # places of one scanner at a time do not show that there are several
+        sample = replace(sample, scanner=sample.source)
+        mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
         return _FittedTrajectory(unmoved, float(np.hypot(shape.sigma, SIGMA_OF_OTHER_HEIGHTS)), True)
     if not (mountings := _met(mountings)):
         return _FittedTrajectory(unmoved, shape.sigma, False)
-    moved = _carried(sample, shape.trajectory, mountings, progress)
-    return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, shape.sigma, True)
-
-
-def _carried(sample, trajectory, mountings, progress):
-    """The trajectory moved to the height and the way of the scanners where it is not theirs; else the same."""
-    level = _at_height(trajectory, mountings, progress)
-    # a trajectory far above its scanners swings over them, as the vehicle rolls
-    return _on_way(level, mountings if level is trajectory else _met(scanner_mountings(sample, level)), progress)
+    level = _at_height(shape.trajectory, mountings, progress)
+    if level is not shape.trajectory:   # a trajectory far above its scanners swings over them, as the vehicle rolls
+        mountings = _met(scanner_mountings(sample, level))
+    moved, left = _on_way(level, mountings, progress)
+    return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, float(np.hypot(shape.sigma, left)), True)
 
 
 def _near(mountings):
@@ -77,7 +75,7 @@ def _met(mountings):
 
 def _other_heights(sample, trajectory, mountings, progress):
     """Whether heights are in another unit than places, or upside down; it is said."""
-    if max(mounting.misfit for mounting in mountings) > RAYS.max_unexplained:
+    if not _met(mountings):
         for stretch, phrase in ((FOOT, "in feet where x and y are in metres"), (1.0 / FOOT, "in metres where x and y are in feet")):
             stretched = scanner_mountings(sample, trajectory, stretch)
             if len(stretched) >= len(mountings) and len(_met(stretched)) == len(stretched):
@@ -112,15 +110,14 @@ def _at_height(trajectory: Trajectory, mountings: Sequence[_Mounting], progress:
     return replace(trajectory, z=trajectory.z + metres)
 
 
-def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Progress) -> Trajectory:
-    """The trajectory moved to the way of the scanners where no vehicle is so wide; else the same."""
+def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Progress) -> tuple[Trajectory, float]:
+    """The trajectory moved to the way of the scanners where no vehicle is so wide, else the same, and m by which it fits the scanners worse."""
     if not mountings:
-        return trajectory
+        return trajectory, 0.0
     times, lever = _places(mountings)
     far = np.abs(lever[:, 1]) > HALF_VEHICLE
     if not far.any():
-        _tell_jump(trajectory, times, lever, progress)
-        return trajectory
+        return trajectory, _jump(trajectory, times, lever, progress)
     worst = float(lever[np.argmax(np.abs(lever[:, 1])), 1])
     x, y = (np.interp(times[np.argmax(far)], trajectory.time, getattr(trajectory, name)) for name in "xy")
     extent = "" if far.all() else f" at {np.count_nonzero(far)} of {len(far)} places looked at"
@@ -129,19 +126,24 @@ def _on_way(trajectory: Trajectory, mountings: Sequence[_Mounting], progress: Pr
     return _moved_aside(trajectory, mountings, times, lever[:, 1])
 
 
-def _tell_jump(trajectory, times, lever, progress):
-    """Warn where the scanners rode elsewhere on the vehicle at one place than at the one before, in one drive."""
+def _jump(trajectory, times, lever, progress):
+    """m by which the scanners ride elsewhere on the vehicle at one place than at the one before in one drive, at most; 0 where they do not."""
     pauses = trajectory.time[:-1][np.diff(trajectory.time) > ADJUST.max_seam]
     one_drive = np.diff(np.searchsorted(pauses, times)) == 0
     speed = np.interp(times, trajectory.time, np.hypot(*(np.gradient(axis, trajectory.time) for axis in (trajectory.x, trajectory.y))))
-    moved = np.abs(np.diff(lever[:, :2], axis=0))
-    moved[:, 0] -= VEHICLE.largest_lag * np.abs(np.diff(speed))   # which a clock that lags moves along
-    jumps = np.flatnonzero(one_drive & (moved.max(axis=1) > VEHICLE.least_jump))
-    if len(jumps):
-        k = int(jumps[0])
-        metres = float(np.hypot(*np.diff(lever[k:k + 2, :2], axis=0)[0]))
-        progress.warn(f"The scanners ride {metres:.1f} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s. Files of "
-                      "one drive seem to be in two datums: export all of them and the trajectory from one solution.")
+    moved = np.abs(np.diff(lever, axis=0))
+    moved[:, 0] = np.maximum(moved[:, 0] - VEHICLE.largest_lag * np.abs(np.diff(speed)), 0.0)   # which a clock that lags moves along
+    metres = np.where(one_drive, np.linalg.norm(moved, axis=1), 0.0)
+    turned = VEHICLE.attitude_noise if np.isfinite([trajectory.roll, trajectory.pitch, trajectory.heading]).all() else VEHICLE.course_noise
+    arm = np.linalg.norm(lever, axis=1)
+    arm = np.maximum(arm[1:], arm[:-1])   # longer ones are those of a clock, which is told of by itself
+    jumps = np.flatnonzero((metres > VEHICLE.least_jump + turned * arm) & (arm < 2 * VEHICLE.usual_ahead))
+    if not len(jumps):
+        return 0.0
+    k = int(jumps[0])
+    progress.warn(f"The scanners ride {metres[k]:.2g} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s. Files of "
+                  "one drive seem to be in two datums: export all of them and the trajectory from one solution.")
+    return float(metres[jumps].max())
 
 
 def _windows(mountings):
@@ -161,7 +163,7 @@ def _places(mountings):
 
 
 def _moved_aside(trajectory, mountings, at, beside):
-    """The trajectory moved to where the scanners were; `beside` (P,) m to the left at (P,) times of places.
+    """The trajectory moved to where the scanners were, and m that are unknown between places; `beside` (P,) m to the left at (P,) times of places.
 
     What is the same in the vehicle (another lane) or on the map (another datum) is one move, of which the one is taken that leaves less. Where
     neither fits, as with several drives of which one is wrong, the trajectory is moved to the left evenly between the places.
@@ -178,9 +180,10 @@ def _moved_aside(trajectory, mountings, at, beside):
     east, north, metres = 0.0, 0.0, in_vehicle
     if left_over[1] < VEHICLE.clearly_better * left_over[0]:
         (east, north), metres = on_map[:2], 0.0
+    unknown = 0.0
     if min(left_over) > VEHICLE.one_move:
-        east, north, metres = 0.0, 0.0, np.interp(trajectory.time, at, beside)
-    return replace(trajectory, x=trajectory.x + east - np.sin(yaw) * metres, y=trajectory.y + north + np.cos(yaw) * metres)
+        east, north, metres, unknown = 0.0, 0.0, np.interp(trajectory.time, at, beside), min(left_over)
+    return replace(trajectory, x=trajectory.x + east - np.sin(yaw) * metres, y=trajectory.y + north + np.cos(yaw) * metres), unknown
 
 
 # Where the scanners rode, seen from the trajectory: by the rays of their mirrors, whatever the trajectory says.
@@ -203,11 +206,12 @@ class _Mounting:
 
 @dataclass(frozen=True)
 class _Sample:
-    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner."""
+    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner and value of point_source_id."""
 
     time: np.ndarray
     place: np.ndarray
     scanner: np.ndarray
+    source: np.ndarray
 
 
 def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "automatic") -> _Sample:
@@ -226,7 +230,8 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
             parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
-    return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order])
+    source = numbers[order, SCANNER_FIELDS.index("point_source_id")]
+    return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order], source)
 
 
 def _read_place(reader, file, start, windows):
@@ -382,7 +387,7 @@ VEHICLE_HEIGHT = 4.0     # source: m (the same), so no scanner rides farther abo
 # Points from which places of scanners are found
 PLACES_READ = 6          # cost: places in the files that are looked at, and
 PLACE_WINDOWS = 5        # cost: windows that points are read of at a place; the first and the last of them are not whole
-PLACE_GAP = 2.0          # derived: s between windows, from which they are of another place, as PLACE_WINDOWS take far less
+PLACE_GAP = 0.5          # derived: s between windows, from which they are of another place, as PLACE_WINDOWS take less
 PLACE_POINTS = 50_000    # cost: that are read at a place, at most
 MIN_TURNS_POINTS, MAX_TURNS_POINTS = 60, 200   # weight: of a window, with which four unknowns are found well; cost: those that are used
 

@@ -16,11 +16,9 @@ from ..las.reader import read_headers
 from ..las.samples import without_copies
 from ..trajectory.trajectory import Trajectory
 from ..weights import ESTIMATE, HEAD, MIRROR, RAYS, TRACK
-from .adjustment import Adjusted, Returns, grown_poses
-from .interleaved import ScannerSplitter, lines_of_each, scan_line_directions, steps_of, told_apart
-from .poses import YAW, Poses, Spinning, first_poses, known_intervals, spinning_scanners
+from .adjustment import Adjusted, Returns, ScannerSplitter, grown_poses, lines_of_each, scan_line_directions, steps_of, told_apart
+from .poses import YAW, HeadTrack, Poses, Spinning, first_poses, head_heights, known_intervals, spinning_scanners, turning_heads
 from .samples import UNKNOWN_SCANNER, FirstTrack, Samples, first_track, read_samples, ridge_of, rounding_of, thinned
-from .turning_head import HeadTrack, head_heights, turning_heads
 
 WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
 
@@ -105,7 +103,8 @@ def _estimated(files, scanner_field, wkt, progress):
 def _of_mirrors(samples, tracks, scanners, wkt, progress):
     """The trajectory by the rays of the scanners that a field distinguishes or, where those explain too little, that the scan lines do."""
     adjusted = None
-    if by_field := samples.scanners > 1 and _all_take_part(samples, scanners):
+    taking_part = np.count_nonzero(np.isin(samples.scanner, [scanner.number for scanner in scanners]))
+    if by_field := samples.scanners > 1 and taking_part >= ESTIMATE.min_taking_part * len(samples):
         adjusted = _adjusted(samples, tracks, scanners, progress)
     if not _explains(adjusted):
         # a field may have numbered tiles or files
@@ -139,12 +138,6 @@ def _could_be_driven(adjusted):
     """Whether a vehicle can have moved as the poses say."""
     tracks = [adjusted.poses.control[drive.first:drive.first + drive.count, :2] for drive in adjusted.poses.drives]
     return _usual_acceleration(tracks, MIRROR.knot_spacing) <= ESTIMATE.max_acceleration
-
-
-def _all_take_part(samples, scanners):
-    """Whether nearly all points are of scanners whose mirrors turn."""
-    taking = np.isin(samples.scanner, [scanner.number for scanner in scanners])
-    return np.count_nonzero(taking) >= ESTIMATE.min_taking_part * len(samples)
 
 
 def _adjusted(samples, tracks, scanners, progress):

@@ -11,8 +11,7 @@ import shapely
 
 from ...common.features import PASSES, Features
 from ..weights import FRAME
-from .passes import decimate_by_distance
-from .road_frame import RoadFrame
+from .road_frame import RoadFrame, decimate_by_distance
 
 COORDINATE_DECIMALS = 4  # derived: of coordinates in layers: 0.1 mm
 

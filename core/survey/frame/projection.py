@@ -14,9 +14,8 @@ import numpy as np
 from ...common.parallel import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
 from ..weights import FRAME
-from .passes import Pass
 from .road import NODE_SPACING, Road
-from .road_frame import RoadFrame
+from .road_frame import Pass, RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 

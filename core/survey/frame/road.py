@@ -165,9 +165,8 @@ def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _smooth(values):
     """Gaussian smoothing along the line, point-reflected at the end points so that these stay."""
     pad = min(int(4 * FRAME.line_smoothing / NODE_SPACING), len(values) - 1)
-    head = 2 * values[0] - values[1:pad + 1][::-1]
-    tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, values, tail], FRAME.line_smoothing / NODE_SPACING)[pad:pad + len(values)]
+    padded = np.pad(values, pad, "reflect", reflect_type="odd")
+    return gaussian_filter1d(padded, FRAME.line_smoothing / NODE_SPACING)[pad:pad + len(values)]
 
 
 def _extend(x, y):

@@ -66,20 +66,7 @@ class RowSpans:
 
     def near(self, first: int, last: int) -> np.ndarray:
         """(N,) int, ascending, the rows that are kept at any of the stations from `first` to `last` (inclusive)."""
-        blocks, rows = self._blocks
-        low, high = (min(max(station, 0), max(self.stations - 1, 0)) // BLOCK for station in (first, last))
-        candidates = np.unique(rows[blocks[low]:blocks[high + 1]])
-        return candidates[(self.first[candidates] <= last) & (self.end[candidates] > first)]
-
-    @cached_property
-    def _blocks(self):
-        """Where the list of rows of each block begins, and these lists one after the other."""
-        kept = np.flatnonzero(self.end > self.first)
-        low, high = self.first[kept] // BLOCK, (self.end[kept] - 1) // BLOCK
-        count = high - low + 1
-        block = np.repeat(low, count) + np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        order = np.argsort(block, kind="stable")
-        return np.searchsorted(block[order], np.arange(self.stations // BLOCK + 2)), np.repeat(kept, count)[order]
+        return np.flatnonzero((self.first <= last) & (self.end > first) & (self.end > self.first))
 
 
 class RowTable:

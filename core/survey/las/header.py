@@ -167,11 +167,6 @@ def _base_size(point_format: int) -> int | None:
     return PointFormat(point_format).size if point_format in supported_point_formats() else None
 
 
-def _extra_bytes_described(records: list[_Record]) -> int:
-    """Bytes that the records which name extra bytes describe together."""
-    return sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
-
-
 def _readable_extra_bytes(record: _Record, point_format: int, room: int) -> _Record:
     """A record of extra bytes that describes at most `room` bytes, in names that the point format leaves free; itself where nothing is wrong."""
     from laspy import PointFormat
@@ -316,16 +311,13 @@ def _lengths(fields, records, size):
         point_size = next((compression.point_size for record in records if (compression := _Compression.of(record))), 0)
         return replace(fields, record_size=point_size) if base <= point_size <= MAX_RECORD_SIZE else fields
     places = fields.points_at, records[-1].at + len(records[-1].head) + records[-1].length if records else fields.header_size
-    sizes = fields.record_size, base + _extra_bytes_described(records), base
-    for points_at, record_size in product(places, sizes):
-        if base <= record_size <= MAX_RECORD_SIZE and _fills(fields, points_at, record_size, size):
+    described = sum(_size(entry) or 0 for record in records if record.describes_extra_bytes for entry in _entries(record))
+    for points_at, record_size in product(places, (fields.record_size, base + described, base)):
+        # as many points as are stated, of so many bytes each, end where the points of the file end
+        if base <= record_size <= MAX_RECORD_SIZE and points_at <= size \
+                and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]:
             return replace(fields, points_at=points_at, record_size=record_size)
     return fields
-
-
-def _fills(fields, points_at, record_size, size):
-    """Whether as many points as are stated, of so many bytes each, end where the points of the file end."""
-    return points_at <= size and fields.end_of_points(size) in [points_at + count * record_size for count in fields.counts]
 
 
 def _mended_records(records, fields):

@@ -89,8 +89,7 @@ def _report_lattice(lattice, progress):
     elif not phases and not lattice.notes:
         lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {LATTICE.min_window_points} in "
                              f"{LATTICE.rotation_window:g} s of each scanner); scanlines are made of the points near each section plane.")
-    for note in lattice.notes:
-        progress.warn(note)
+    progress.warn_all(lattice.notes)
 
 
 @dataclass
@@ -238,7 +237,8 @@ def _mirror_phases(survey, road, rotations, samples, until):
     if not rotations:
         return {}
     bins = _bins_of(survey, rotations)
-    stride = min(_stride(samples[key], frequency) for key, (frequency, _) in rotations.items())
+    per_turn = min(np.median([len(w.time) / (np.ptp(w.time) * abs(frequency)) for w in samples[key]]) for key, (frequency, _) in rotations.items())
+    stride = 2 * int(max(per_turn / LATTICE.max_points_per_turn, 1.0) / 2) + 1   # every how many points one is used; odd
     mounts = {key: _mounting(samples[key], frequency) for key, (frequency, origin) in rotations.items() if origin == "angle"}
 
     first, last = survey.store.span(road)
@@ -331,12 +331,6 @@ class _PhasorBins:
         self.count[bins] += count
         self.since[bins] += since
         self.phasor[bins] += phasor
-
-
-def _stride(windows, frequency):
-    """Every how many points one is used for the phase; odd."""
-    per_turn = np.median([len(w.time) / (np.ptp(w.time) * abs(frequency)) for w in windows])
-    return 2 * int(max(per_turn / LATTICE.max_points_per_turn, 1.0) / 2) + 1
 
 
 def _turns_between_lines(line, phase):

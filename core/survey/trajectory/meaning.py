@@ -14,11 +14,10 @@ from ...common.errors import RoadExtractionError
 from ...io.text_table import finite_or_nan, read_number_table
 from ...lazy import pyproj
 from ..weights import TRAJECTORY
-from .columns import ROLES, candidates_by_role, listed
+from .columns import ROLES, candidates_by_role, columns_from_numbers, listed, rough_metres
 from .table_columns import TableColumn, angle_of, first_row, is_record, titled_columns, with_week
 from .time_systems import UNIX_EPOCH, clock_times, counted_days, is_to_come, leap_seconds, time_system_by_size, unix_time_found
 from .trajectory import Trajectory
-from .unnamed_columns import columns_from_numbers, rough_metres
 
 EARTH_RADIUS = 6.33e6, 6.42e6    # source: m (WGS 84: 6.357e6 to 6.378e6) from the centre of the earth to its surface, with mountains
 FROM_CENTRE = ("ecef_x", "ecef_y", "ecef_z")   # roles of earth-centred coordinates
@@ -44,7 +43,9 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     Geodetic coordinates are preferred to earth-centred ones, numbers to clock times, and the usual names to others.
     """
     notes: list[str] = []
-    full = _filled_columns(columns)
+    # columns that may be a role by their names and hold something, the likeliest first
+    full = {role: [k for k in places if not columns[k].is_empty]
+            for role, places in candidates_by_role([column.title for column in columns]).items()}
     _prefer_geodetic(columns, full, label, notes)
     column_of = {role: places[0] for role, places in full.items() if places and role not in given}
     if "minute" in column_of:
@@ -56,12 +57,6 @@ def meaning_of(columns: Sequence[TableColumn], label: str, given: Sequence[str] 
     if "z" in column_of:
         notes += _note_on_heights([columns[k].title for k in full["z"]], label)
     return _Meaning(column_of, tuple(notes))
-
-
-def _filled_columns(columns):
-    """{role: columns that may be it by their names and hold something, the likeliest first}."""
-    named = candidates_by_role([column.title for column in columns])
-    return {role: [k for k in places if not columns[k].is_empty] for role, places in named.items()}
 
 
 def _time_columns(columns, candidates, used):

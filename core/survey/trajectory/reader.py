@@ -16,11 +16,10 @@ from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import finite_or_nan, read_number_table
 from ...io.weights import IO
 from ..weights import TRAJECTORY
-from .columns import listed, stated_angle_unit
+from .columns import angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
 from .meaning import SAY_WHICH, meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
 from .trajectory import Trajectory, lengths_in_metres, reproject_trajectory
-from .unnamed_columns import angle_between, driven_course, geographic_unit, rough_metres
 
 SBET_DOUBLES = 17  # source: Applanix POSPac; time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"

@@ -219,11 +219,6 @@ ANGLE = re.compile(r"(?P<before>[NSEW])?\s*(?P<sign>[+-])?\s*(?P<degrees>\d{1,3}
                    r"(?P<after>[NSEW])?$", re.IGNORECASE)
 
 
-def _hold_angles(texts: Sequence[str]) -> bool:
-    """Whether most texts of a column are degrees with minutes, or with a hemisphere."""
-    return are_mostly(texts, lambda text: (match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text))
-
-
 def _angles_of(texts: Sequence[str]) -> np.ndarray:
     """(N,) degrees of texts such as 48°12'30.5"N, 48 12 30.5, N 48° 12.5' or 48.2085°; south and west negative, NaN where a text is none."""
     degrees = np.full(len(texts), np.nan)
@@ -282,8 +277,10 @@ def angle_of(columns: Sequence[TableColumn], k: int, most: float) -> np.ndarray:
 def _degrees(column):
     """(N,) degrees of a column of angles, without the hemisphere beside it."""
     unit, values = column.unit, column.values
-    if column.holds_texts:
-        return _angles_of(column.written()) if _hold_angles(column.written()) else values
+    if column.holds_texts:   # angles have minutes, or a hemisphere
+        texts = column.written()
+        has_parts = lambda text: (match := ANGLE.match(text)) and (match["minutes"] or match["before"] or match["after"] or "°" in text)  # noqa: E731
+        return _angles_of(texts) if are_mostly(texts, has_parts) else values
     if unit.name == "radians":
         # np.degrees gives the last bit that a product would not
         return np.degrees(values) if unit.factor == 1.0 else values * np.degrees(unit.factor)

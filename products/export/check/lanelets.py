@@ -212,7 +212,7 @@ class _LaneletCheck:
         odd = []
         for id in self.network.left:
             lanelet = self.whole.lanelets[id]
-            shared = [neighbour for neighbour in self.network.beside(id)
+            shared = [neighbour for neighbour, _ in self.network.abreast(id)
                       if lanelet.way("left") in (self.whole.lanelets[neighbour].way("left"), self.whole.lanelets[neighbour].way("right"))]
             if self.network.reversed_right[id] or self.network.reversed_left[id] and not shared:
                 odd.append(id)
@@ -287,7 +287,7 @@ class _LaneletCheck:
         driven = [id for id in self.network.left if self.network.driven(id)]
         self.findings.lanes = len(driven)
         self.findings.successors = sum(len(self.network.following(id)) for id in driven)
-        self.findings.neighbours = len({(min(id, neighbour), max(id, neighbour)) for id in driven for neighbour in self.network.beside(id)})
+        self.findings.neighbours = len({(min(id, neighbour), max(id, neighbour)) for id in driven for neighbour, _ in self.network.abreast(id)})
 
 
 # Tags, rules of traffic and areas, held against what the format knows.

@@ -37,16 +37,15 @@ class Cubics:
     def __len__(self) -> int:
         return len(self.rows)
 
-    def at(self, s: np.ndarray | float, order: int = 0) -> np.ndarray:
-        """Value, or slope (order 1), at s."""
+    def at(self, s: np.ndarray | float) -> np.ndarray:
+        """Its values at s."""
         s = np.asarray(s, float)
         if not len(self.rows):
             return np.zeros(s.shape)
         k = np.searchsorted(self.rows[:, 0], s + 1e-9, side="right") - 1
         start, a, b, c, d = self.rows[np.maximum(k, 0)].T
         ds = s - start
-        value = a + ds * (b + ds * (c + ds * d)) if order == 0 else b + ds * (2 * c + ds * 3 * d)
-        return np.where(k < 0, 0.0, value)
+        return np.where(k < 0, 0.0, a + ds * (b + ds * (c + ds * d)))
 
     def moved(self, ds: float) -> Cubics:
         """The same function of s + ds."""

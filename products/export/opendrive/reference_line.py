@@ -36,8 +36,7 @@ class _Pose(NamedTuple):
     heading: float
 
 
-def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None, float | None] = (None, None),
-                  turn_tolerance: float = 0.01) -> PlanView | None:
+def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None, float | None] = (None, None)) -> PlanView | None:
     """Lines, arcs and spirals that join without a gap or a kink, each as long as the tolerance allows.
 
     Long straight lines are found first. Between them every element leads from the place and direction where the last one ends to the farthest
@@ -47,20 +46,21 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     points : (N, 2) metres in order
     tolerance : metres that a point may lie beside it
     ends : radians, headings that it has at its start and end, None for any
-    turn_tolerance : radians by which an arc or a line may miss that at the end
     Returns PlanView from the first point to the last one; None where even short elements miss the points
 
     References
     ----------
     .. [1] Bertolazzi and Frego (2015), G1 fitting with clothoids, Mathematical Methods in the Applied Sciences 38(5), 881-897.
     """
-    plan, = side_by_side([reference_steps(points, tolerance, ends, turn_tolerance)])
-    return plan
+    return side_by_side([reference_steps(points, tolerance, ends)])[0]
 
 
 def reference_steps(points: np.ndarray, tolerance: float, ends: tuple[float | None, float | None] = (None, None),
                     turn_tolerance: float = 0.01) -> Steps[PlanView | None]:
-    """`fit_reference` as a task, so that many lines are fitted side by side."""
+    """`fit_reference` as a task, so that many lines are fitted side by side.
+
+    turn_tolerance : radians by which an arc or a line may miss the heading at the end
+    """
     points = np.asarray(points, float)
     fit, goal = (yield from _fit_of(points, tolerance, ends, turn_tolerance)), None
     if ends[1] is not None and abs(wrapped((yield _smoothed, (fit, fit.last))[2] - ends[1])) > turn_tolerance:
@@ -388,25 +388,19 @@ def _in_order(elements):
 
 def polynomial_reference(points: np.ndarray) -> PlanView:
     """A line of parametric cubics through (N, 2) points, joined without a kink: for borders that no other element follows."""
+    from scipy.integrate import trapezoid
     from scipy.interpolate import CubicSpline
 
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
-    curve = CubicSpline(along, points)
-    elements, s = [], 0.0
-    for k in range(len(along) - 1):
-        d, c, b, a = curve.c[:, k]
-        heading = float(np.arctan2(b[1], b[0]))
-        cosine, sine = np.cos(heading), np.sin(heading)
-        span = along[k + 1] - along[k]
-        local = [np.array([cosine * p[0] + sine * p[1], -sine * p[0] + cosine * p[1]]) for p in (b, c, d)]
+    curve, elements, s = CubicSpline(along, points), [], 0.0
+    for k, (span, (x, y)) in enumerate(zip(np.diff(along), points.tolist())):
+        coefficients = curve.c[-2::-1, k]   # of the first to the third power, each of x and y
+        heading = float(np.arctan2(*coefficients[0, ::-1]))
+        c, d = np.cos(heading), np.sin(heading)
         u = np.linspace(0.0, span, 17)
-        slope = local[0][:, None] + 2 * local[1][:, None] * u + 3 * local[2][:, None] * u**2
-        speed = np.hypot(*slope)
-        length = float(((speed[1:] + speed[:-1]) / 2 * np.diff(u)).sum())
-        stretch = span / length
-        values = (0.0, *(float(p[0] * stretch**power) for power, p in enumerate(local, start=1)),
-                  0.0, *(float(p[1] * stretch**power) for power, p in enumerate(local, start=1)))
-        elements.append(PlanElement(s, float(a[0]), float(a[1]), heading, length, "paramPoly3", values))
+        length = float(trapezoid(np.hypot(*curve(along[k] + u, 1).T), u))
+        along_u, across_v = (coefficients @ np.array([[c, -d], [d, c]]) * (span / length) ** np.arange(1, 4)[:, None]).T.tolist()
+        elements.append(PlanElement(s, x, y, heading, length, "paramPoly3", (0.0, *along_u, 0.0, *across_v)))
         s += length
     return PlanView(tuple(elements))
 

@@ -266,38 +266,29 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
              if id(following) in owner and following.direction * cell.direction >= 0}
     after, before = (Counter(pair[side] for pair in pairs) for side in (0, 1))
     follows = {k: j for k, j in pairs if after[k] == before[j] == 1 and (id(slices[k]), id(slices[j])) not in breaks}
+    return _chained(slices, follows)
+
+
+def _chained(items, follows):
+    """Lists of items end to end, those that begin somewhere before rings; `follows`: {number of an item: that of the next one}."""
     leads = set(follows.values())
-    strips, used = [], set()
-    for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):
-        strip = []
+    chains, used = [], set()
+    for k in [k for k in range(len(items)) if k not in leads] + list(range(len(items))):
+        chain = []
         number: int | None = k
         while number is not None and number not in used:
             used.add(number)
-            strip.append(slices[number])
+            chain.append(items[number])
             number = follows.get(number)
-        if strip:
-            strips.append(strip)
-    return strips
+        if chain:
+            chains.append(chain)
+    return chains
 
 
 def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
     """Single lanes, all in the direction of travel, that follow each other without a fork."""
-    rows, free = [], {id(cell) for cell in cells}
-    for cell in cells:
-        if id(cell) not in free:
-            continue
-        row = [cell]
-        free.remove(id(cell))
-        for ahead in (True, False):
-            while (neighbour := _only_one(row[-1] if ahead else row[0], ahead)) is not None and id(neighbour) in free:
-                free.remove(id(neighbour))
-                row.insert(len(row) if ahead else 0, neighbour)
-        rows.append(row)
-    return rows
-
-
-def _only_one(cell: Cell, ahead: bool) -> Cell | None:
-    """The cell that one cell touches ahead or behind, where both touch no other there."""
-    neighbours = cell.beyond(ahead)
-    back = neighbours[0].beyond(not ahead) if len(neighbours) == 1 and neighbours[0] is not cell else []
-    return neighbours[0] if len(back) == 1 and back[0] is cell else None
+    number = {id(cell): k for k, cell in enumerate(cells)}
+    # what touches no other one there, and is touched by no other
+    follows = {k: number[id(cell.after[0])] for k, cell in enumerate(cells) if len(cell.after) == 1 and cell.after[0] is not cell
+               and len(cell.after[0].before) == 1 and cell.after[0].before[0] is cell and id(cell.after[0]) in number}
+    return sorted(_chained(cells, follows), key=lambda row: min(number[id(cell)] for cell in row))

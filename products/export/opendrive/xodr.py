@@ -14,7 +14,7 @@ from ....core.common.features import MARKING_LINES, ROAD_EDGES, Features
 from ....core.common.progress import Progress
 from ....core.driving.layers import Lanes
 from ..sources import LEAST_CURB, RoadMapSource, add_edge, add_marking_line, plan_length, without_repeats
-from ..xml_tree import XmlElement, read_xml, xml_text
+from ..xml_tree import XmlElement, file_text, read_xml
 from .geometry import Cubics, PlanElement, PlanView
 from .model import DRIVEN_TYPES, LINK_NAMES, Connection, Junction, LaneNetwork, LaneSection, MapLane, MapRoad, OpenDriveMap, RoadLink, RoadMark
 from .objects import FIELD_OF, left_out_of, outlines_of, signals_of
@@ -173,28 +173,11 @@ def _junction(element):
 
 # Writing.
 
-SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
-
-
 def opendrive_text(whole: OpenDriveMap) -> str:
     """The file as text."""
     places = [road.plan.at(np.linspace(0, road.plan.length, max(int(road.plan.length / 5), 1) + 1))[0] for road in whole.roads]
     bounds = np.concatenate(places or [np.zeros((1, 2))])
-    return xml_text("opendrive.xml", map=whole, bounds=np.round([*bounds.min(0), *bounds.max(0)], 3), link_names=LINK_NAMES, geometries=GEOMETRIES,
-                    sides_of=_sides_of, stripes_of=_stripes_of)
-
-
-def _sides_of(section):
-    """(tag, lanes in their order) of each side."""
-    lanes = [section.lanes[id] for id in section.order]
-    return [("left", [lane for lane in lanes if lane.id > 0]), ("center", [section.lanes[0]]), ("right", [lane for lane in lanes if lane.id < 0])]
-
-
-def _stripes_of(mark):
-    """(dash, gap, aside), metres, of every stripe of a mark; none where its type says it all."""
-    stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
-    return [(*((mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)), aside if mark.apart else 0.0)
-            for stripe, aside in zip(stripes, (mark.apart / 2, -mark.apart / 2))]
+    return file_text("opendrive.xml", map=whole, bounds=np.round([*bounds.min(0), *bounds.max(0)], 3), link_names=LINK_NAMES, geometries=GEOMETRIES)
 
 
 # The lanes and lines of an OpenDRIVE map as layers like ours.

@@ -320,14 +320,14 @@ def roadside_to_features(roadside: Roadside) -> tuple[Features, Features]:
             if len(places) < 2:  # the slice of a single upright
                 continue
             shape = shapely.linestrings(places[_vertices(piece.s, places, roadside.settings.interval)])
-            lines.add(shape, road=road, side=_side(side), line=number, kind=line.kind, status=status, station_m=piece.s[0],
+            lines.add(shape, road=road, side="left" if side > 0 else "right", line=number, kind=line.kind, status=status, station_m=piece.s[0],
                       end_m=piece.s[-1], offset_m=np.median(piece.d), edge_m=roadside.edges[road].beyond(side, piece.s, piece.d),
                       height_m=np.median(line.chain.top), foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=shape.length)
     for road, poles in roadside.poles.items():
         for pole in poles:
             x, y, z = roadside.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
             side = 1 if pole.d > 0.5 * float(sum(roadside.edges[road].of(side, np.array([pole.s]))[0] for side in (1, -1))) else -1
-            points.add(shapely.Point(x[0], y[0], z[0]), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
+            points.add(shapely.Point(x[0], y[0], z[0]), road=road, side="left" if side > 0 else "right", kind=pole.kind, station_m=pole.s,
                        offset_m=pole.d, edge_m=roadside.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d])),
                        height_m=pole.height, diam_m=pole.diameter)
     return lines, points
@@ -340,7 +340,3 @@ def _vertices(s, places, interval):
         kept = shapely.get_coordinates(shapely.simplify(shapely.linestrings(across), DRAWN_TOLERANCE))
         needed |= np.isin(across[:, 0] + 1j * across[:, 1], kept[:, 0] + 1j * kept[:, 1])
     return np.flatnonzero(needed | np.r_[True, np.diff(np.floor(s / interval)) > 0])
-
-
-def _side(side):
-    return "left" if side > 0 else "right"

@@ -404,54 +404,36 @@ class Placement:
 
 # A placement that most pairs of places agree on, whatever the others say (RANSAC).
 
-_DRAWS = 500          # of three pairs: with half of them false, all three are true in one of eight draws
+_DRAWS = 2000         # cost: at most so many, of three pairs: with half of them false, all three are true in one of eight draws
 _ROUNDS = 10          # of fitting to the pairs that agree and looking again which these are
-_SMALLEST_FRAME = 0.02  # of the largest triangle or distance drawn
 _PAIRS_PER_TERM = 2   # an order is fitted to at least so many times the pairs that it needs
 
 
-def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float, weights: np.ndarray) -> np.ndarray:
+def agreeing(x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float) -> np.ndarray:
     """(N,) bool, the pairs whose displacements one affine transformation explains, as many as can be found; none of too few places.
 
     Where the places lie on a line, as large patches of a straight road do, the transformation is a similarity.
 
     x, y, moved : (N,) and (N, 2) m, places on the map and their displacements
     tolerance : m, from the displacement that the transformation gives
-    weights : (N,) what each pair counts
     """
-    if len(x) < MIN_CONTROL_POINTS[1]:
-        return np.zeros(len(x), dtype=bool)
-    order = np.random.default_rng(1).random((_DRAWS, len(x))).argsort(axis=1)
-    if lie_on_a_line(np.column_stack([x, y])):
-        # as complex numbers a similarity is linear: d = a + b z, from two places
-        terms, target, drawn = np.column_stack([np.ones(len(x)), x + 1j * y]), (moved[:, 0] + 1j * moved[:, 1])[:, None], order[:, :2]
-    else:
-        terms, target, drawn = np.column_stack([np.ones(len(x)), x - x.mean(), y - y.mean()]), moved, order[:, :3]
-    frames = terms[drawn]
-    # distance of the two places, or twice the area of the triangle: near ones say nothing about what lies beside them
-    extent = np.abs(np.linalg.det(frames))
-    usable = extent > _SMALLEST_FRAME * extent.max()
-    if not usable.any():
-        return np.zeros(len(x), dtype=bool)
-    solved = np.linalg.solve(frames[usable], target[drawn[usable]])
-    misfit = np.sqrt((np.abs(np.einsum("nk,dkc->dnc", terms, solved) - target) ** 2).sum(axis=2))
-    within = misfit <= tolerance
-    # a smooth count: the best of many draws is the one whose pairs lie near it
-    votes = (np.where(within, 1.0 - 0.5 * (misfit / tolerance) ** 2, 0.0) * weights).sum(axis=1)
-    return within[int(votes.argmax())]
+    places, inside = np.column_stack([x, y]), None
+    if len(x) >= MIN_CONTROL_POINTS[1]:
+        estimate = cv2.estimateAffinePartial2D if lie_on_a_line(places) else cv2.estimateAffine2D
+        _, inside = estimate(places, places + moved, ransacReprojThreshold=tolerance, maxIters=_DRAWS, confidence=0.9999, refineIters=0)
+    return np.zeros(len(x), bool) if inside is None else inside.ravel() > 0
 
 
-def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray, tolerance: float,
-                     weights: np.ndarray) -> tuple[Placement, np.ndarray] | None:
+def robust_placement(placement: Placement, x: np.ndarray, y: np.ndarray, moved: np.ndarray,
+                     tolerance: float) -> tuple[Placement, np.ndarray] | None:
     """A new placement, of order 2 where there are pairs enough, from places of the map that were found displaced in the photo as drawn by an old one.
 
     x, y, moved : (N,) and (N, 2) m, places on the map, and from there to where the drawn photo has them
     tolerance : m, largest residual of a pair that is used
-    weights : (N,) what each pair counts
     Returns placement, used: Placement and (N,) bool; None where no three pairs agree
     """
     pixel, line = placement.pixels(x + moved[:, 0], y + moved[:, 1])
-    used = agreeing(x, y, moved, tolerance * 1.5, weights)
+    used = agreeing(x, y, moved, tolerance * 1.5)
     fitted = placement
     for _ in range(_ROUNDS):
         if used.sum() < MIN_CONTROL_POINTS[1]:

@@ -176,14 +176,14 @@ def _align(placement: Placement, paint: SurveyedPaint, photo: Photo, progress: P
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(half / 2, width, half), -np.arange(half / 2, height, half)))
         patches = _find_patches(small, drawn, cell_size, x, y, half, search)
         patches = patches.where((patches.score > _LEAST_SCORE) & (patches.second < _MOST_SECOND_OF_PATCHES))
-        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance, patches.score)
+        fitted = robust_placement(placement, patches.x, patches.y, np.column_stack([patches.dx, patches.dy]), tolerance)
         if fitted is None:
             return None
         placement = fitted[0]
     return placement
 
 
-def _on_same_cells(placement, paint, photo, cell):
+def _on_same_cells(placement: Placement, paint: SurveyedPaint, photo: Photo, cell: float) -> tuple[np.ndarray, np.ndarray, float]:
     """The contrast of the intensity image and that of the photo on cells of about that size (m), and the size that they have."""
     factor = max(1, round(cell / paint.cell))
     small = reduced(paint.contrast, factor)
@@ -227,7 +227,7 @@ def _pair_corners(placement: Placement, paint: SurveyedPaint, photo: Photo, x: n
         patches = patches.where(patches.score > _LISTED_SCORE)
         alike = (patches.score >= settings.min_score) & (patches.second <= _MOST_SECOND)
         moved = np.column_stack([patches.dx, patches.dy])
-        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance, patches.score[alike])
+        fitted = robust_placement(placement, patches.x[alike], patches.y[alike], moved[alike], times * settings.tolerance)
         if fitted is None or fitted[1].sum() < max(LEAST_PAIRS, _LEAST_SHARE * alike.sum()):
             return None
         pixel, line = placement.pixels(patches.x + patches.dx, patches.y + patches.dy)
@@ -336,14 +336,15 @@ class _Rival(NamedTuple):
 
 def _corner_scores(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """(N,) how well the photo fits about corners of paint, (N,) m, local: correlation of the best place within decimetres; NaN outside."""
-    maps = _maps(placement, paint, photo, x, y, _OFF)
+    maps = _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, _OFF)
     return np.array([np.nan if match is None else match.max() for match in maps])
 
 
 def _nearby_rival(placement: Placement, paint: SurveyedPaint, photo: Photo, x: np.ndarray, y: np.ndarray) -> _Rival | None:
     """The shift by some metres that the corners allow best, besides none at all; None where no corner lies in the photo."""
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(_OFF / _CELL) + 1,) * 2)
-    maps = [cv2.dilate(match, near) for match in _maps(placement, paint, photo, x, y, _AROUND) if match is not None]
+    correlations = _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, _AROUND)
+    maps = [cv2.dilate(match, near) for match in correlations if match is not None]
     if not maps:
         return None
     votes = np.maximum(maps, 0.0)
@@ -365,11 +366,6 @@ def _rival_elsewhere(best: np.ndarray, other: np.ndarray, shift: tuple[float, fl
     best_scores, other_scores = best[np.isfinite(best)], other[np.isfinite(other)]
     scale = len(other_scores) / max(len(best_scores), 1)
     return _Rival(*shift, float((other_scores < _UNLIKE).sum()), scale * float((best_scores < _UNLIKE).sum()))
-
-
-def _maps(placement, paint, photo, x, y, search):
-    """Correlations about each corner, (2 n + 1, 2 n + 1) each, its own place in the middle; None outside the photo."""
-    return _correlation_maps(*_on_same_cells(placement, paint, photo, _CELL), x, y, _HALF, search)
 
 
 # Patches of the intensity image found again in the photo, once that lies roughly on the map.

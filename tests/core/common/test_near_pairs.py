@@ -4,7 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from lanewright.core.common import arrays as near_pairs
+from lanewright.core.common.arrays import overlapping_pairs
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects.classify import classify_markings
 from lanewright.core.markings.objects.repeating import give_way_blocks
@@ -22,22 +22,16 @@ def pieces(count, length, longest, seed=0):
             "elongation": along / across, "direction": random.normal(0.0, 0.1, count), "along": random.random(count) < 0.8}
 
 
-@pytest.fixture(params=[7, 1 << 18])
-def at_a_time(request, monkeypatch):
-    monkeypatch.setattr(near_pairs, "PAIRS_PER_BLOCK", request.param)
-
-
 @pytest.mark.parametrize("apart", [0.0, 3.0])
 @pytest.mark.parametrize("counts", [(60, 90), (1, 5), (0, 4), (4, 0), (0, 0)])
-def test_every_pair_that_meets_comes_once(at_a_time, apart, counts):
+def test_every_pair_that_meets_comes_once(apart, counts):
     one, other = (pieces(count, 50.0, 8.0, seed) for seed, count in enumerate(counts))
     # whole metres: many begin where others end
     bounds = [np.rint(column[name]) for column in (one, other) for name in ("s0", "s1")]
-    found = [np.column_stack(pair) for pair in near_pairs.overlapping_pairs(*bounds, apart)]
-    found = np.concatenate([np.empty((0, 2), int), *found])
+    found = np.column_stack(overlapping_pairs(*bounds, apart))
     s0, s1, t0, t1 = bounds
     expected = np.argwhere((s0[:, None] <= t1 + apart) & (s1[:, None] >= t0 - apart))
-    np.testing.assert_array_equal(found[np.lexsort(found.T[::-1])], expected)
+    np.testing.assert_array_equal(found, expected)
 
 
 def partners_among_all(column, line):
@@ -52,7 +46,7 @@ def partners_among_all(column, line):
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 400])
-def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
+def test_lines_of_a_double_line_are_those_among_all_pairs(count):
     column = pieces(count, 300.0, 30.0)
     line = column["along"]
     found = classes._has_partner(column, line)
@@ -73,7 +67,7 @@ def strips_beyond_lines_among_all(column, line, room):
     return found
 
 
-def test_strips_beyond_an_edge_line_are_those_among_all_pairs(at_a_time):
+def test_strips_beyond_an_edge_line_are_those_among_all_pairs():
     column = pieces(500, 300.0, 20.0)
     line, room = column["along"] & (column["length"] > 2.0), 4.0 - np.abs(column["offset"])
     found = classes._beyond_the_edge_line(column, line, room)
@@ -87,7 +81,7 @@ def away(column, k):
     return np.max(gaps, axis=0)
 
 
-def test_bars_of_hatching_and_their_outlines_are_those_among_all_pairs(at_a_time):
+def test_bars_of_hatching_and_their_outlines_are_those_among_all_pairs():
     column = pieces(300, 900.0, 8.0)
     kinds = np.where(np.arange(300) % 3 > 0, "hatch", "symbol")
     bars, symbols = kinds == "hatch", np.flatnonzero(kinds == "symbol")

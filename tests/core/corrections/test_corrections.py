@@ -6,9 +6,8 @@ import shapely
 from clustered_streets import ClusteredStreet
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CORRECTIONS, ROAD_EDGES, Features
-from lanewright.core.corrections.apply import correct_edges, correct_marking_lines, correct_markings
+from lanewright.core.corrections.apply import correct_edges, correct_lanes, correct_marking_lines, correct_markings
 from lanewright.core.corrections.corrections import corrections_from_features
-from lanewright.core.corrections.lanes import correct_lanes
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects

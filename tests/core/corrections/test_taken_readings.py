@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CORRECTIONS, Features
-from lanewright.core.corrections.apply import correct_marking_lines
+from lanewright.core.corrections.apply import correct_lanes, correct_marking_lines
 from lanewright.core.corrections.corrections import corrections_from_features, taken_reading
-from lanewright.core.corrections.lanes import correct_lanes
 from lanewright.core.curves.model_selection import fit_curve
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.fit import named_by_estimate

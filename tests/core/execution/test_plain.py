@@ -8,8 +8,8 @@ import pytest
 from lanewright.core.execution.phase import CHECKSUM, FORMAT, TEXT_LENGTH, is_whole, read_plain, write_plain
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.occlusion import OcclusionGrid
-from lanewright.core.survey.frame.passes import Pass
 from lanewright.core.survey.frame.road import Road
+from lanewright.core.survey.frame.road_frame import Pass
 
 
 def there_and_back(tmp_path, value):

@@ -2,9 +2,8 @@
 
 import pytest
 from lanewright.core.common.features import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
-from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.results.attributes import TITLES, short_alias
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler
+from lanewright.processing_provider.call import qgis_fields
+from lanewright.processing_provider.styling import LOOKS, STYLES, TITLES, Styler, short_alias
 from qgis.core import (
     QgsApplication,
     QgsEditorWidgetSetup,

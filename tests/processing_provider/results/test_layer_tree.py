@@ -5,9 +5,7 @@ from datetime import datetime, timezone
 
 import pytest
 from lanewright.algorithms.provenance import Provenance
-from lanewright.processing_provider.results.layer_tree import REPLACES_LAST_RUN, place_layer
-from lanewright.processing_provider.results.road_maps import runs_of
-from lanewright.processing_provider.results.runs import Run, run_of, survey_name
+from lanewright.processing_provider.results.road_maps import REPLACES_LAST_RUN, Run, place_layer, run_of, runs_of, survey_name
 from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsVectorLayer
 
 

@@ -184,10 +184,18 @@ def test_one_offset_out_of_line_moves_nothing_by_much():
     np.testing.assert_allclose(moved[1][1][1] - moved[0][1][1], 0.02, atol=0.012)
 
 
+def test_drives_with_heights_of_two_kinds_are_laid_on_each_other_and_said():
+    survey, heard = twice(up=0.2), Heard()
+    adjust_passes(survey, heard)
+    assert min(survey.frame.pass_sigma[0].metres) >= 0.19
+    assert sum("more than navigation drifts" in text for text in heard.warned) == 1
+
+
 def test_drives_of_different_years_are_laid_on_each_other_and_said():
     survey, heard = twice(left=-1.0, paint=lambda x, y: np.abs(y) < 0.06), Heard()
     adjust_passes(survey, heard)
     one, other = face_of(survey, 0), face_of(survey, 1)
     np.testing.assert_allclose(one, other, atol=0.01)
-    assert np.median(survey.frame.pass_sigma[0].metres) == pytest.approx(0.5, abs=0.02)
+    # either year may be the right one
+    assert np.median(survey.frame.pass_sigma[0].metres) == pytest.approx(1.0, abs=0.02)
     assert sum("more than navigation drifts" in text for text in heard.warned) == 1

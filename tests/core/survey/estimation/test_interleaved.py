@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.common.progress import Progress
+from lanewright.core.survey.estimation.adjustment import told_apart
 from lanewright.core.survey.estimation.estimate import estimate_trajectory
-from lanewright.core.survey.estimation.interleaved import told_apart
 from lanewright.core.survey.open_survey import open_survey
 from mirror_drives import Mirror, mirror_drive
 

@@ -5,8 +5,8 @@ import pytest
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.estimation.estimate import estimate_trajectory, refuse_handheld
+from lanewright.core.survey.estimation.poses import HeadTrack
 from lanewright.core.survey.estimation.samples import FirstTrack
-from lanewright.core.survey.estimation.turning_head import HeadTrack
 
 TURN, SPEED, HEIGHT, HALF, RADIUS = 0.1, 8.0, 1.8, 9.0, 60.0   # s, m/s; m: the head, the walls beside the street, its bend
 START = 318_204_000.0

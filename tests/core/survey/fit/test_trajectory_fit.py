@@ -112,15 +112,26 @@ def test_heights_that_are_upside_down_are_named(tmp_path):
     assert len(warned) == 1 and "upside down" in warned[0] and found.sigma > 0.1
 
 
-@pytest.mark.parametrize("metres, told_of", [((0.0, 0.8), True), ((1.2, 0.0), True), ((0.1, 0.15), False)])
-def test_a_step_between_the_files_of_one_drive_is_told(tmp_path, metres, told_of):
+@pytest.mark.parametrize("metres, told_of", [((0.0, 0.8, 0.0), True), ((1.2, 0.0, 0.0), True), ((0.1, 0.15, 0.0), True), ((0.0, 0.0, 0.2), True),
+                                             ((0.0, 0.03, 0.02), False)])
+def test_a_step_between_the_files_of_one_drive_is_told_and_leaves_the_street_as_uncertain(tmp_path, metres, told_of):
     """The second half of a street is in another datum, by less than the half of a vehicle."""
     measured = mirror_drive(PAIR, seconds=20.0)
     late = measured.time > np.median(measured.time)
     place = measured.place.copy()
-    place[late, :2] += metres
-    _, warned = told(replace(measured, place=place).write(tmp_path / "street.laz"), measured.trajectory())
+    place[late] += metres
+    found, warned = told(replace(measured, place=place).write(tmp_path / "street.laz"), measured.trajectory())
     assert [bool(re.search("elsewhere beside the trajectory.*two datums", text)) for text in warned] == [True] * told_of
+    assert found.sigma == pytest.approx(np.linalg.norm(metres) if told_of else 0.0, abs=0.15)
+
+
+def test_scanners_of_which_places_show_one_at_a_time_are_two(tmp_path):
+    """Programs that write the points of one scanner after those of the other."""
+    measured = mirror_drive(PAIR, seconds=20.0)
+    first = (np.floor(measured.time) % 4 < 3) == (measured.scanner == measured.scanner.min())
+    path = replace(measured, **{name: getattr(measured, name)[first] for name in ("time", "place", "scanner")}).write(tmp_path / "street.laz")
+    found, warned = told(path, beside(measured.trajectory(), 2.0))
+    assert found.seen and len(warned) == 1 and "to the left of the way" in warned[0]
 
 
 def test_times_of_broken_points_do_not_disturb_those_of_the_drive(straight):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.frame.row_table import BLOCK, RowSpans, RowTable, stacked
+from lanewright.core.survey.frame.row_table import RowSpans, RowTable, stacked
 
 STATIONS = 300
 ROWS = [(10, np.arange(5.0)), (-3, np.arange(8.0)), (290, np.arange(20.0)), (150, np.empty(0)), (0, np.arange(300.0)), (400, np.arange(4.0))]
@@ -32,7 +32,7 @@ def test_what_is_missing_may_differ_from_row_to_row():
     assert table[1, 20:22].tolist() == [1, 1] and table[1, 0] == 3
 
 
-@pytest.mark.parametrize("first, last", [(0, 0), (9, 9), (10, 14), (BLOCK, 2 * BLOCK), (289, 290), (-5, 400), (299, 320), (310, 330)])
+@pytest.mark.parametrize("first, last", [(0, 0), (9, 9), (10, 14), (64, 128), (289, 290), (-5, 400), (299, 320), (310, 330)])
 def test_rows_near_a_stretch_are_those_that_are_kept_there(first, last):
     spans = RowTable.of_rows(ROWS, STATIONS).spans
     kept = np.zeros((len(ROWS), STATIONS), bool)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from copc_files import write_copc
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.near import points_near
-from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
+from lanewright.core.survey.las.parallel_reader import ParallelCloudReader, points_near
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
 
 COUNT, LONG_COUNT, RECORD_SIZE, POINTS_AT = (107, "<I"), (247, "<Q"), (105, "<H"), (96, "<I")

@@ -8,7 +8,7 @@ import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.las.near import points_near
+from lanewright.core.survey.las.parallel_reader import points_near
 
 
 @pytest.fixture

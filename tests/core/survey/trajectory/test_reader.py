@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.columns import columns_by_role
+from lanewright.core.survey.trajectory.columns import columns_by_role, rough_metres
 from lanewright.core.survey.trajectory.reader import read_trajectory, trajectory_from_columns
 from lanewright.core.survey.trajectory.trajectory import Trajectory, reproject_trajectory
-from lanewright.core.survey.trajectory.unnamed_columns import rough_metres
 
 COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "heading")
 FORMAT = {"time": "%.6f", "x": "%.4f", "y": "%.4f", "z": "%.4f", "roll": "%.6f", "pitch": "%.6f", "heading": "%.6f"}

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.shape import shaped_trajectory
-from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory
+from lanewright.core.survey.trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 
 BENT = chain(ahead(80), bend(250, 60), ahead(60))
 
@@ -54,9 +53,13 @@ def test_a_gap_between_two_drives_is_no_bend():
     assert not shaped_trajectory(both).said
 
 
-def test_a_jump_of_a_receiver_is_no_bend():
+@pytest.mark.parametrize("axis, metres, told", [("y", 0.5, "0.50 m"), ("z", -0.2, "0.20 m"), ("z", 0.03, None), ("x", 0.1, None)])
+def test_a_jump_to_the_side_or_up_is_no_bend_and_told_by_its_size(axis, metres, told):
+    """Along the way a jump may be that of a time."""
     driven = drive(chain(ahead(100)))
-    assert not shaped_trajectory(replace(driven, y=driven.y + np.where(driven.time > driven.time[200], 0.5, 0.0))).said
+    shape = shaped_trajectory(replace(driven, **{axis: getattr(driven, axis) + np.where(driven.time > driven.time[200], metres, 0.0)}))
+    assert len(shape.said) == (told is not None) and all(f"jumps by {told}" in text for text in shape.said)
+    assert shape.sigma == pytest.approx(abs(metres) if told else 0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("stray", [0, 5, 9])

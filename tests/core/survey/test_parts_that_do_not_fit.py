@@ -1,0 +1,99 @@
+"""Files and drives of a street that do not fit each other: said in one sentence, and the street is known no better than they fit."""
+
+import re
+from dataclasses import replace
+
+import laspy
+import numpy as np
+import pytest
+from lanewright.core.common.progress import Progress
+from lanewright.core.survey.open_survey import open_survey
+
+
+class Heard(Progress):
+    def __init__(self):
+        self.warned = []
+
+    def warn(self, text):
+        self.warned.append(text)
+
+
+@pytest.fixture(scope="module")
+def street(made_survey):
+    """Points of a street surveyed with two scanners, in order of time, and its trajectory."""
+    sample, path = made_survey(length=100.0, pulse_rate=60_000.0, rotation_rate=100.0)
+    cloud = laspy.read(path)
+    cloud.points = cloud.points[np.argsort(cloud.gps_time, kind="stable")]
+    return cloud, sample.trajectory
+
+
+def part_of(cloud, folder, name, rows, **changed):
+    """The file of some points, with columns changed; Z in millimetres."""
+    part = laspy.LasData(cloud.header)
+    part.points = cloud.points[rows].copy()
+    for column, change in changed.items():
+        part[column] = change(np.asarray(part[column]))
+    part.write(folder / f"{name}.laz")
+    return folder / f"{name}.laz"
+
+
+def told(paths, trajectory):
+    """Warnings, and the least sigma (m) of what passes leave, 0 where nothing is known."""
+    heard = Heard()
+    survey = open_survey(paths, trajectory, progress=heard)
+    survey.store.close()
+    return heard.warned, min((min(along.metres) for along in survey.frame.pass_sigma.values()), default=0.0)
+
+
+def halves(street, tmp_path, **changed):
+    """Two files of the first and the second half of the drive, columns of the second changed."""
+    cloud, _ = street
+    late = cloud.gps_time > np.median(cloud.gps_time)
+    return [part_of(cloud, tmp_path, "first", ~late), part_of(cloud, tmp_path, "second", late, **changed)]
+
+
+@pytest.mark.parametrize("factor, brighter", [(3.0, "second"), (0.4, "first"), (1.3, None)])
+def test_files_along_one_drive_with_other_scales_of_intensity_are_told(street, tmp_path, factor, brighter):
+    paths = halves(street, tmp_path, intensity=lambda counts: np.minimum(factor * counts, 65535).astype(np.uint16))
+    warned, _ = told(paths, street[1])
+    assert len(warned) == (brighter is not None)
+    for text in warned:
+        times, named = re.search(r"about (\S+) times brighter in (\S+) than", text).groups()
+        assert float(times) == pytest.approx(max(factor, 1 / factor), rel=0.2) and f"{brighter}.laz" in named
+
+
+def test_files_of_scanners_that_measure_together_may_differ_in_brightness(street, tmp_path):
+    cloud, trajectory = street
+    first = cloud.point_source_id == cloud.point_source_id.min()
+    paths = [part_of(cloud, tmp_path, "one", first),
+             part_of(cloud, tmp_path, "other", ~first, intensity=lambda counts: np.minimum(2.5 * counts, 65535).astype(np.uint16))]
+    assert told(paths, trajectory) == ([], 0.0)
+
+
+@pytest.mark.parametrize("up, least", [(0.2, 0.18), (0.0, 0.0)])
+def test_a_street_is_known_no_better_than_the_heights_of_its_files_fit(street, tmp_path, up, least):
+    warned, sigma = told(halves(street, tmp_path, Z=lambda units: units + round(1000 * up)), street[1])
+    assert len(warned) == (up > 0.0) and all("two datums" in text for text in warned)
+    assert sigma >= least
+
+
+def test_the_clock_of_one_drive_of_two_is_told(street, tmp_path):
+    cloud, trajectory = street
+    again = 100.0
+    times = trajectory.time, trajectory.time + again
+    driven = replace(trajectory, **{name: np.tile(getattr(trajectory, name), 2) for name in ("x", "y", "z", "roll", "pitch", "heading")},
+                     time=np.concatenate(times))
+    within = cloud.gps_time < trajectory.time[-1] - 0.7
+    paths = [part_of(cloud, tmp_path, "first", within), part_of(cloud, tmp_path, "second", within, gps_time=lambda time: time + again + 0.6)]
+    warned, sigma = told(paths, driven)
+    assert len(warned) == 1 and "points of 1 of 2 passes do not seem to fit the trajectory" in warned[0]
+    assert sigma > 5.0
+
+
+def test_a_file_without_times_among_others_is_named(street, tmp_path):
+    cloud, trajectory = street
+    first, second = halves(street, tmp_path)
+    timeless = laspy.convert(laspy.read(second), point_format_id=0, file_version="1.2")
+    timeless.write(tmp_path / "timeless.laz")
+    warned, _ = told([first, tmp_path / "timeless.laz"], trajectory)
+    assert any("1 of 2 files" in text and "timeless.laz" in text and "gps_time" in text for text in warned)
