@@ -68,7 +68,7 @@ def fitted_lanes(roads: Sequence[LanesOfRoad]) -> Work:
     long = [axis for of_road in groups for _, axis in of_road if len(axis.at) >= ALIGNMENT.min_places_per_fit]
     curves = Phase(curves_of_lanes, NoSource(), (), lambda item: "the courses of lanes", listed=ALIGNMENT.fitted_together)
     places = [_known_places(track, lanes) for lanes in roads for track in lanes.tracks]
-    asked = [*((*axis.thinned, "divided") for axis in long), *((*place, "whole") for place in places)]
+    asked = [*((*axis.thinned, "divided") for axis in long), *((x, y, "whole") for _, x, y in places)]
     known = yield Asked(curves, asked, 0.6)
     parts, courses = {id(axis): cuts for axis, cuts in zip(long, known)}, iter(known[len(long):])
     elements_of = [(*axis.part(first, last), "element") for axis in long for first, last, _ in parts[id(axis)]]
@@ -80,7 +80,9 @@ def fitted_lanes(roads: Sequence[LanesOfRoad]) -> Work:
             cuts = [(*map(float, np.interp([first, last], axis.u, axis.at)), curve) for first, last, curve in divided.get(id(axis), ())]
             for i, offset in members:
                 of_lane[i] = _of_lane(lanes.tracks[i], offset, cuts, lanes.s, lanes.road)
-    return [(_courses([next(courses) for _ in lanes.tracks], lanes.road, of_lane), of_lane) for lanes, of_lane in zip(roads, elements)]
+    fitted = zip(courses, places)
+    return [(_courses([(fit, *place) for _, (fit, place) in zip(lanes.tracks, fitted)], lanes.road, of_lane), of_lane)
+            for lanes, of_lane in zip(roads, elements)]
 
 
 def curves_of_lanes(source: NoSource, lines: Sequence[tuple[np.ndarray, np.ndarray, str]]) -> list[CurveFit | list[tuple[float, float, str]]]:
@@ -194,7 +196,7 @@ class _Axis:
     def of(cls, s, d, first, road):
         stations = s[first:first + len(d)]
         x, y = road.to_map(stations, d)
-        return cls(stations, x, y, np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+        return cls(stations, x, y, _lengths(x, y))
 
     @property
     def thinned(self):
@@ -238,11 +240,15 @@ def _cut(arc, first, last):
 
 
 def _courses(fits, road, elements):
-    """The Courses of fitted lanes of a road; on an Element its arc or straight itself, so that lanes of a bend are concentric."""
-    drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
-    stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
+    """The Courses of lanes of a road: of each its fit, and the stations, x and y of its known places. On an Element it is the arc or straight itself.
+
+    So lanes of a bend are concentric. A place lies near two stretches of a road that turns back, and the lane tells of which it is.
+    """
+    drawn = [fit.curve.sample(STATION_STEP) for fit, *_ in fits]
+    near = [np.interp(_lengths(*places.T), _lengths(x, y), s) for places, (_, s, x, y) in zip(drawn, fits)]
+    stations = road.locate(*np.concatenate(drawn).T, np.concatenate(near))[0] if drawn else np.empty(0)
     courses, first = [], 0
-    for fit, places, of_lane in zip(fits, drawn, elements):
+    for (fit, *_), places, of_lane in zip(fits, drawn, elements):
         station = stations[first:first + len(places)]
         first += len(places)
         rising = np.isfinite(station)
@@ -257,11 +263,16 @@ def _courses(fits, road, elements):
 
 
 def _known_places(track, lanes):
-    """x, y of a lane where it is not bridged, of all of it where little is known."""
+    """Stations, x, y of a lane where it is not bridged, of all of it where little is known."""
     measured = track.status != BRIDGED
     if measured.sum() < ALIGNMENT.min_places_per_fit:
         measured = np.ones(len(track), bool)
-    return lanes.road.to_map(lanes.s[track.first:track.last + 1][measured], track.d[measured])
+    stations = lanes.s[track.first:track.last + 1][measured]
+    return stations, *lanes.road.to_map(stations, track.d[measured])
+
+
+def _lengths(x, y):
+    return np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
 
 
 def _draw_to(element, places, station):

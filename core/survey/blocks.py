@@ -48,7 +48,6 @@ class _BlockSummary:
         self.census.join(other.census)
 
 
-
 def _cells(start, end, bits):
     """Number of the first cell of so many bits of a station in units of 0.1 mm, and (C,) m at the middles of those from start to end (m)."""
     first, last = (int(station / COORDINATE_SCALE) >> bits for station in (start, end))

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ...survey.frame.row_table import RowTable, stacked
-from ...survey.store.seen import FAR
+from ...survey.store.records import FAR
 from ..weights import LANES
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
@@ -275,9 +275,9 @@ def _grouped(entries):
     for name in ("trust", "seen", "wide"):
         groups[name] = np.maximum.reduceat(entries[name], begin)
     made_of, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
-    # two lines closer than that are the two sides of one broad line
-    double = (end > begin) & (groups["d"] - right > LANES.double_spacing[0]) & (made_of <= DOUBLE)
-    groups["made"] = np.where(double, DOUBLE, np.where(made_of == DOUBLE, SOLID, made_of))
+    # two lines closer than that are the two sides of one broad line, unless their layer knows better
+    double = np.logical_or.reduceat(entries["made"] == DOUBLE, begin) | (end > begin) & (groups["d"] - right > LANES.double_spacing[0])
+    groups["made"] = np.where(double & (made_of <= DOUBLE), DOUBLE, made_of)
     groups["wide"] = np.where(double, np.nan, groups["wide"])
     return {**groups, "right_row": entries["row"][end], "right": right}
 

@@ -10,17 +10,20 @@ import numpy as np
 import shapely
 from scipy.ndimage import grey_closing, median_filter
 
+from ...countries.catalogue import NEUTRAL
+from ...road.surface.extract import SurfaceSettings
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable
+from ...survey.store.records import BIN, BINS, FAR
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.seen import BIN, BINS, FAR
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
 from ..weights import EVIDENCE
 from .candidates import Candidates
 from .sections import STATION_STEP
+from .weights import UNPAINTED
 
 _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
 
@@ -85,17 +88,6 @@ def offsets_of_others(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.nd
             offsets.append(np.where(known, np.interp(s, station[at], d[at]), np.nan))
             directions.append(way)
     return np.array(offsets).reshape(-1, len(s)), np.array(directions, int)
-
-
-def other_carriageway(frame: RoadFrame, road: int, others: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """(K,) bool, whether another road of the survey was driven the other way beside this one: both are carriageways of one road.
-
-    others : as `offsets_of_others` gives them
-    """
-    ways = {p.direction for p in frame.passes_of(road)}
-    with np.errstate(invalid="ignore"):
-        beside = np.abs(others[0][~np.isin(others[1], list(ways))]) > EVIDENCE.own_road
-    return beside.any(axis=0) & (len(ways) == 1)
 
 
 def _apart(p, road):
@@ -172,10 +164,10 @@ def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.n
 
 def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,
                 hatched: np.ndarray | None = None, arrows: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0,
-                divided: np.ndarray | None = None, bare: np.ndarray | None = None) -> Evidence:
+                of_road: int | None = None, bare: np.ndarray | None = None) -> Evidence:
     """The Evidence of each interval, from what is known at each station.
 
-    driven, directions : as `driven_offsets` gives them; divided : (K,) bool as `other_carriageway` gives it; bare : (K,) bool as in Evidence
+    driven, directions : as `driven_offsets` gives them, and behind the passes `of_road` those of other roads; bare : (K,) bool as in Evidence
     covered, hatched : (K, BINS) bool; arrows : (A, 3) as `arrows_of` gives them; markings : of which stop lines count; each may be None
     """
     size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
@@ -188,9 +180,21 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     with np.errstate(invalid="ignore", divide="ignore"):
         offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
     stops = np.empty((0, 4)) if markings is None else _stop_lines(candidates, s, markings, road)
-    on_one_of_two, without_paint = (np.zeros(len(size), bool) if there is None else np.add.reduceat(there, candidates.first) * 2 > size
-                                    for there in (divided, bare))
-    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops, on_one_of_two, without_paint)
+    without_paint = np.zeros(len(size), bool) if bare is None else np.add.reduceat(bare, candidates.first) * 2 > size
+    return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
+                    _divided(candidates, offsets, directions, of_road), without_paint, of_road)
+
+
+def _divided(candidates, offsets, directions, of_road):
+    """(I,) bool, whether another road was driven the other way beyond the end of this one: both are carriageways of one road.
+
+    Where the surface ends so far away that it is looked at no farther, the road may go on.
+    """
+    ends = candidates.valid & UNPAINTED[candidates.made_of] & (np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane)
+    oncoming = offsets[of_road:][~np.isin(directions[of_road:], directions[:of_road])][..., None]
+    with np.errstate(invalid="ignore"):   # NaN where it was not driven
+        between = ends & (candidates.left * np.sign(oncoming) > 0) & (np.abs(candidates.left) < np.abs(oncoming))
+    return (between & (np.abs(oncoming) > EVIDENCE.own_road)).any(axis=(0, 2)) & (len(set(directions[:of_road].tolist())) == 1)
 
 
 def _of_interval(candidates, s, arrows):

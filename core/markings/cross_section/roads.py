@@ -31,7 +31,6 @@ from .evidence import (
     evidence_of,
     hatched_places,
     offsets_of_others,
-    other_carriageway,
     surface_coverage,
 )
 from .sections import STATION_STEP, CrossSections, no_lines
@@ -164,10 +163,9 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     hatched, borders = (None if markings is None else of_areas(markings, frame, number, s) for of_areas in (hatched_places, borders_of_hatching))
     boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement)
     candidates = boundary_candidates(boundaries, weights)
-    others = offsets_of_others(frame, number, s)
-    seen = [np.concatenate(parts) for parts in zip(driven, others)]
-    evidence = evidence_of(candidates, s, *seen, covered, hatched, arrows, markings, number, other_carriageway(frame, number, others), bare)
-    return boundaries, candidates, replace(evidence, own=len(driven[1]), taken=_taken_on(taken, number, candidates, s))
+    seen = [np.concatenate(parts) for parts in zip(driven, offsets_of_others(frame, number, s))]
+    evidence = evidence_of(candidates, s, *seen, covered, hatched, arrows, markings, number, len(driven[1]), bare)
+    return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
 
 
 def usual_side(frame: RoadFrame) -> str:

@@ -14,7 +14,7 @@ from scipy.special import softmax
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
-from ...survey.store.seen import BIN, FAR
+from ...survey.store.records import BIN, FAR
 from ..weights import EVIDENCE, LANES
 from .beside import BEYOND, WIDTH
 from .candidates import Candidates

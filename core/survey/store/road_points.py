@@ -11,9 +11,8 @@ import numpy as np
 
 from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
-from .records import ROAD_POINT, Points, join_columns, point_dtype, points_of_scanners
+from .records import ROAD_POINT, Points, Seen, join_columns, point_dtype, points_of_scanners, seen_in_section
 from .section_store import SectionStore, Stretch
-from .seen import Seen, seen_in_section
 
 if TYPE_CHECKING:
     from ..frame.row_table import SigmaAlong

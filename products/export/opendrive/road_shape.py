@@ -69,15 +69,12 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
     """
     guide, index, along, keep = _guided(strip, centres)
-    for square in (False, True):
-        ends, widest = _end_headings(strip, guide, square)
-        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
-        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
-            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
-        plan, s_all, t_all, is_square = _square_ends(plan, strip, shown, near)
-        if is_square:
-            break   # else a curve is too tight to go on in: the ends become square
+    ends, widest = _end_headings(strip, guide)
+    plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+    shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
+    if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
+        shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
+    plan, s_all, t_all = _square_ends(plan, strip, shown, near)
     strip = shown
     for s in s_all:   # two vertices of every border nearly at one place are a step across the road: all borders have the same s there
         for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
@@ -102,7 +99,7 @@ def _guided(strip, centres):
 
 
 def _square_ends(plan, strip, shown, near):
-    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are).
+    """(the reference line with what makes its ends square, s and t of the vertices from it).
 
     near : for each slice (n,) metres along the road
     """
@@ -117,9 +114,9 @@ def _square_ends(plan, strip, shown, near):
         before = 0.0 if strip[0].beyond(False) else max(-float(s_all[0][:, 0].min()), 0.0)
         after = 0.0 if strip[-1].beyond(True) else max(float(s_all[-1][:, -1].max()) - plan.length, 0.0)
         if max(before, after) < LEAST_STEP:
-            return plan, s_all, t_all, True
+            break
         plan, near = plan.lengthened(before, after), [s + before for s in near]
-    return plan, s_all, t_all, False
+    return plan, s_all, t_all
 
 
 def _finer(one, s):
@@ -237,9 +234,8 @@ def _smoothed(points, width):
     return np.stack([np.convolve(column, weights / weights.sum(), mode="valid") for column in padded.T], axis=1)
 
 
-def _end_headings(strip, guide, square):
-    """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut obliquely;
-    metres, its width)."""
+def _end_headings(strip, guide):
+    """((start, end) headings square to the ends at which the road meets another, None where they are cut obliquely; metres, its width)."""
     headings, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     near, far = (int(np.clip(np.searchsorted(along, distance), 1, len(guide) - 1)) for distance in (END_CHORD, along[-1] - END_CHORD))
@@ -249,7 +245,7 @@ def _end_headings(strip, guide, square):
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
         oblique = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        headings.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
+        headings.append(heading if meets and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
     return tuple(headings), widest
 
 

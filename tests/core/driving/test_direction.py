@@ -169,3 +169,12 @@ def test_where_the_lines_leave_open_on_which_side_traffic_drives_lanes_say_so():
     assert max(said.values()) < 0.9
     asked = {row["direction"]: row["confidence"] for line, row in street.lanes(traffic_side="left")[0] if np.median(street.offsets(line)) < -4.0}
     assert said[-1] < asked[-1] - 0.05
+
+
+@pytest.mark.parametrize("half", [0.1, 0.15])
+def test_a_double_line_parts_the_directions_of_a_broad_street_that_was_driven_in_its_outermost_lanes(half):
+    """As in the United States, where both lines are 10 cm wide and as far apart. Between the drives there is no end of the road."""
+    street = Street(vehicle=-8.25, again=(12.0,)).paint(-9.9, kind="edge").paint(-6.6, pattern="dashed").paint(-3.3, pattern="dashed")
+    street.paint(half, pattern="double-solid").paint(-half, pattern="double-solid").paint(3.3, pattern="dashed")
+    assert len(street.frame.roads) == 2
+    assert {round(offset): way for offset, way in ways(street).items()} == {-8: 1, -5: 1, -2: 1, 2: -1, 5: -1}

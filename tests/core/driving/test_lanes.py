@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKING_LINES, MARKINGS, ROAD_EDGES, Features
+from lanewright.core.driving.alignment import LanesOfRoad, fitted_lanes
 from lanewright.core.driving.driving_lines import DrivingSettings
 from lanewright.core.driving.heights import road_heights
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
 from lanewright.core.execution.in_step import in_step
 from lanewright.core.execution.phase import Threads
+from lanewright.core.survey.frame.road import Road, reference_nodes
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
@@ -364,3 +366,24 @@ def test_lanes_of_different_widths_keep_them_where_the_lines_between_them_end(la
         offsets = np.concatenate([street.offsets(line)[np.asarray(line.coords)[:, 0] > EAST + 80.0] for line, _ in lines
                                   if abs(np.median(street.offsets(line)) - lane) < 0.5])
         assert np.abs(offsets - lane).max() < 0.05
+
+
+def test_two_lanes_that_keep_to_their_lines_with_bare_asphalt_between_them_lie_there():
+    """As where turning lanes of two carriageways face each other over a median without paint: one was driven, the other lies alike."""
+    street = Street(vehicle=-3.4).paint(-5.0).paint(-8.3, kind="edge").paint(5.0).paint(8.3, kind="edge")
+    lines, _ = street.lanes()
+    assert sorted(offset for offset in middle(street, lines) if abs(offset) < 5.0) == pytest.approx([-3.4, 3.4], abs=0.15)
+
+
+def test_a_lane_goes_on_behind_where_its_road_crosses_itself():
+    """A ramp leads around three quarters of a circle and over the road that it comes from."""
+    bends = (0.0, 80.0), (1 / 25, 37.5 * np.pi), (0.0, 80.0)
+    heading = np.cumsum(np.concatenate([np.full(int(length / 0.05), 0.05 * bend) for bend, length in bends]))
+    x, y = 0.05 * np.cumsum(np.cos(heading))[::10], 0.05 * np.cumsum(np.sin(heading))[::10]
+    road = Road(0, *reference_nodes(np.c_[x, y]), 0.0)
+    s = np.arange(20.0, 270.0, 0.5)
+    count = len(s)
+    track = LaneTrack(0, np.full(count, -1.6), np.full(count, 3.0), np.full(count, MEASURED), np.zeros(count, bool), *[np.full(count, -1)] * 4,
+                      *[np.ones(count)] * 3, 1)
+    ((courses,), _), = in_step([fitted_lanes([LanesOfRoad([track], s, road)])], Threads(1))[0]
+    assert courses.s[[0, -1]] == pytest.approx(s[[0, -1]], abs=0.5) and np.diff(courses.s).max() < 2.0
