@@ -120,11 +120,11 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int,
 
     Returns the Sections of its own intervals, (I, K) nats of what named their lines, and `transitions`
     """
-    candidates, evidence, first_direction, own, known, left = item
+    candidates, evidence, first_direction, count, known, left = item
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
     sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
-    return (sections.take(slice(own)), misnamed_costs(candidates, sections, weights)[:own],
+    return (sections.take(slice(count)), misnamed_costs(candidates, sections, weights)[:count],
             transitions(candidates, sections, known, lane_width, left, weights))
 
 
