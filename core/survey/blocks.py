@@ -637,12 +637,10 @@ class _PartsOfFiles:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes read the same."""
-        store = self.store
+        reader = Recipe("core.survey.blocks:_BlockReader", dict(frame=self.reader.frame, choice=self.reader.choice, slots=self.reader.slots))
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("core.survey.blocks:_parts_of_files", dict(
-            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
-            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
-            ranges=self.ranges, block=self.block))
+        return Recipe("core.survey.blocks:_PartsOfFiles", dict(
+            files=files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block))
 
     def items(self, points: int) -> list[tuple[int, int]]:
         """(first, last + 1) numbers of blocks that have about so many points together."""
@@ -657,14 +655,6 @@ class _PartsOfFiles:
         last, begin, count = self.ranges[item[1] - 1].tolist()
         last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
         return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
-
-
-def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, frame: RoadFrame, choice: PointChoice, slots: TimeSlots,
-                    drop: float, **others: Any) -> _PartsOfFiles:
-    """What `_PartsOfFiles.recipe` describes."""
-    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
-    reader = _BlockReader(frame, choice, slots)
-    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
 
 
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:

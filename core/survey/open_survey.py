@@ -38,11 +38,11 @@ from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_traj
 from .weights import FRAME, READING, STORE, VEHICLE
 
 
-def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
                 progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
     """Read a survey, or take what an earlier run read from the work folder.
 
-    paths : LAS, LAZ or COPC files in any order
+    paths : LAS, LAZ or COPC files in any order, or their headers
     trajectory, settings, progress : as in `read_survey`
     execution : who runs the phases that read from the survey, and the work folder
 
@@ -183,7 +183,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
-    _put_in_order(survey, shared, progress.part(parts_at, read_at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
@@ -208,13 +211,6 @@ def _survey_of(files, frame, read, settings, crs, progress):
     scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
     return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
-
-
-def _put_in_order(survey, shared, progress):
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.executor = shared.ordering
-        survey.put_in_order(shared.ordered, shared.ordering, progress)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):
