@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import shapely
+from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer  # also, without it QGIS ends where it gives out a 3D view
 from qgis.core import (
-    Qgis,
     QgsColorRampShader,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -16,14 +15,12 @@ from qgis.core import (
     QgsFillSymbol,
     QgsGeometry,
     QgsGradientColorRamp,
+    QgsMapLayer,
     QgsNullSymbolRenderer,
     QgsPointCloudExtentRenderer,
     QgsPointCloudLayer,
     QgsProcessingUtils,
     QgsProject,
-    QgsProperty,
-    QgsPropertyCollection,
-    QgsProviderRegistry,
     QgsTask,
     QgsVector3D,
     QgsVectorFileWriter,
@@ -32,24 +29,21 @@ from qgis.core import (
 from qgis.gui import QgisInterface
 from qgis.PyQt import sip
 from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtXml import QDomDocument
 
-from ..core.common.errors import RoadExtractionError
 from ..core.lazy import laspy
 from ..core.survey.las.copc_writer import write_copc
-from ..core.survey.las.reader import read_blocks
 from ..processing_provider.results.road_maps import RoadMap, clouds_of, output_of
+from ..processing_provider.styling import LOOKS, STYLES
 from ..processing_provider.texts import tr
 from .background import with_points
 
-STONE, DARK, BRIGHT = "#d8d2c4", "#3c4045", "#ffffff"
-SAMPLE = 50_000       # points by which the brightness of a cloud is set
-LINE_WIDTH = 2.0       # pixels of driving lines and edges without a curb
+DARK, BRIGHT = "#3c4045", "#ffffff"
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
-POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
+POINTS = "lanewright/points"   # custom property of a layer of points about a place; QGIS ends where one goes while a view still loads it
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
-# colour, and m above the surface, or the two would flicker; of dashed lines the dashes are markings
-LOOKS = {"ROAD_SURFACE": ("#8d9299", 0.0), "MARKINGS": ("#ffffff", 0.02), "ROAD_EDGES": ("#26282b", 0.02), "DRIVING_LINES": ("#1554b0", 0.05)}
+SHOWN = ("ROAD_SURFACE", "MARKINGS", "ROAD_EDGES", "DRIVING_LINES")   # results; of dashed lines the dashes are markings
 AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
 TASKS: set[QgsTask] = set()   # that read points; QGIS keeps no reference
 DISTANCE, PITCH = 45.0, 60.0  # m from the place to the camera, and degrees from straight down
@@ -60,49 +54,22 @@ def give_3d_looks(road_map: RoadMap) -> list[QgsVectorLayer]:
     shown = []
     for layer in road_map.vectors:
         output = output_of(layer)
-        if output not in LOOKS:
+        if output not in SHOWN:
             continue
-        colour, above = LOOKS[output]
         if layer.renderer3D() is None:
-            _give(layer, _area(colour, above) if layer.geometryType() == Qgis.GeometryType.Polygon else _line(colour, above))
+            _give_look(layer, LOOKS[output][0])
         shown += [layer] if output != "ROAD_EDGES" else [layer, _curb_walls(layer)]
     return shown
 
 
-def _give(layer, symbol):
-    from qgis._3d import QgsVectorLayer3DRenderer
+def _give_look(layer, name):
+    """Give a layer the 3D symbols of one of our styles; QGIS itself points them at the layer when it draws them.
 
-    renderer = QgsVectorLayer3DRenderer(symbol)
-    renderer.setLayer(layer)
-    layer.setRenderer3D(renderer)
-
-
-def _area(colour, above):
-    from qgis._3d import QgsPhongMaterialSettings, QgsPolygon3DSymbol
-
-    material = QgsPhongMaterialSettings()
-    material.setDiffuse(QColor(colour).darker(500))
-    material.setSpecular(QColor("#000000"))
-    return _at_its_height(QgsPolygon3DSymbol(), material, colour, above)
-
-
-def _line(colour, above):
-    """Simple lines: broad ones are buffered by QGIS, which loses their heights."""
-    from qgis._3d import QgsLine3DSymbol, QgsSimpleLineMaterialSettings
-
-    symbol = QgsLine3DSymbol()
-    symbol.setRenderAsSimpleLines(True)
-    symbol.setWidth(LINE_WIDTH)
-    return _at_its_height(symbol, QgsSimpleLineMaterialSettings(), colour, above)
-
-
-def _at_its_height(symbol, material, colour, above):
-    material.setAmbient(QColor(colour))  # the same from all sides: outlines run either way round
-    symbol.setMaterialSettings(material)
-    symbol.setAltitudeClamping(Qgis.AltitudeClamping.Absolute)
-    symbol.setAltitudeBinding(Qgis.AltitudeBinding.Vertex)
-    symbol.setOffset(above)
-    return symbol
+    Lines are simple ones: broad ones are buffered by QGIS, which loses their heights. Paint and lines lie some cm above the surface, or they flicker.
+    """
+    document = QDomDocument()
+    document.setContent((STYLES / "in_3d" / f"{name}.qml").read_text(encoding="utf-8"))
+    layer.importNamedStyle(document, QgsMapLayer.StyleCategory.Symbology3D)
 
 
 def _curb_walls(edges):
@@ -132,11 +99,7 @@ def _curb_walls(edges):
     walls = QgsVectorLayer(path, tr("Curbs for the 3D view"), "ogr")
     walls.setCustomProperty(WALLS, edges.id())
     walls.setRenderer(QgsNullSymbolRenderer())
-    symbol = _area(STONE, 0.0)
-    extruded = QgsPropertyCollection()
-    extruded.setProperty(symbol.Property.ExtrusionHeight, QgsProperty.fromField("height_m"))
-    symbol.setDataDefinedProperties(extruded)
-    _give(walls, symbol)
+    _give_look(walls, "curbs")
     project.addMapLayer(walls, False)
     node = project.layerTreeRoot().findLayer(edges)
     group = node.parent() if node is not None else project.layerTreeRoot()
@@ -144,27 +107,44 @@ def _curb_walls(edges):
     return walls
 
 
-def _clouds(road_map, project):
-    """The survey's point clouds as layers of the project, of those that QGIS can show."""
-    shows = QgsProviderRegistry.instance().preferredProvidersForUri
-    return [_cloud(path, road_map, project) for path in clouds_of(road_map, project)[0] if shows(path)]
+def _bring_points(road_map, place, canvas, project):
+    """Read the points about a place in the background and show them: as COPC, which every QGIS shows, LAS and LAZ only one with PDAL."""
+    def ready(task, made, problem):
+        TASKS.discard(task)
+        if made is not None and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
+            cloud, settings = _cloud(*made, title, road_map.vectors[0].crs()), canvas.mapSettings()
+            project.addMapLayer(cloud, False)
+            (road_map.group or project.layerTreeRoot()).addLayer(cloud)
+            settings.setLayers([cloud, *settings.layers()])
+
+    paths, title = clouds_of(road_map, project)[0], tr("Points of the 3D view")
+    if paths:
+        TASKS.add(with_points(title, paths, place, AROUND, _as_copc, ready))
 
 
-def _cloud(path, road_map, project):
-    """A point cloud as a layer of the project, the brighter the stronger its echo; the map shows nothing of it."""
-    from qgis._3d import QgsColorRampPointCloud3DSymbol, QgsPointCloudLayer3DRenderer
+def _as_copc(points):
+    """(path of a COPC file, a low and a high intensity) of (N, 4) x, y, z and intensity, at most MOST of them; None of none."""
+    if not len(points):
+        return None
+    points = points[::math.ceil(len(points) / MOST)]
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = np.full(3, 0.001), np.floor(points[0, :3])
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = points[:, :3].T
+    cloud.intensity = points[:, 3].astype(np.uint16)
+    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
+    write_copc(cloud, path)
+    return path, *np.percentile(points[:, 3], (2, 98)).tolist()
 
-    known = {layer.source(): layer for layer in project.mapLayers().values() if isinstance(layer, QgsPointCloudLayer)}
-    if path in known:
-        return known[path]
+
+def _cloud(path, weak, strong, title, crs):
+    """A layer of points, the brighter the stronger their echo; the map shows nothing of it."""
     options = QgsPointCloudLayer.LayerOptions()
     options.skipStatisticsCalculation = True
-    provider = QgsProviderRegistry.instance().preferredProvidersForUri(path)[0].metadata().key()
-    cloud = QgsPointCloudLayer(path, Path(path).name, provider, options)
-    if not cloud.crs().isValid():
-        cloud.setCrs(road_map.vectors[0].crs())
+    cloud = QgsPointCloudLayer(path, title, "copc", options)
+    cloud.setCrs(crs)
+    cloud.setCustomProperty(POINTS, True)
     cloud.setRenderer(QgsPointCloudExtentRenderer(QgsFillSymbol.createSimple({"style": "no", "outline_style": "no"})))
-    weak, strong = _intensities(path)
     shader = QgsColorRampShader(weak, strong, QgsGradientColorRamp(QColor(DARK), QColor(BRIGHT)))
     shader.classifyColorRamp(2)
     symbol, look = QgsColorRampPointCloud3DSymbol(), QgsPointCloudLayer3DRenderer()
@@ -175,55 +155,13 @@ def _cloud(path, road_map, project):
     look.setSymbol(symbol)
     look.setLayer(cloud)
     cloud.setRenderer3D(look)
-    project.addMapLayer(cloud, False)
-    (road_map.group or project.layerTreeRoot()).addLayer(cloud)
     return cloud
-
-
-def _bring_points(road_map, place, canvas, project):
-    """Read the points about a place in the background and show them: as COPC, which QGIS shows without PDAL too."""
-    def ready(task, path, problem):
-        TASKS.discard(task)
-        if path and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
-            project.removeMapLayers([layer.id() for layer in project.mapLayers().values() if layer.customProperty(POINTS)])
-            cloud, settings = _cloud(path, road_map, project), canvas.mapSettings()
-            cloud.setName(title)
-            cloud.setCustomProperty(POINTS, True)
-            settings.setLayers([cloud, *settings.layers()])
-
-    paths, title = clouds_of(road_map, project)[0], tr("Points of the 3D view")
-    if paths:
-        TASKS.add(with_points(title, paths, place, AROUND, _as_copc, ready))
-
-
-def _as_copc(points):
-    """The path of a COPC file of (N, 4) x, y, z and intensity, at most MOST of them; "" of none."""
-    if not len(points):
-        return ""
-    points = points[::math.ceil(len(points) / MOST)]
-    header = laspy.LasHeader(point_format=6, version="1.4")
-    header.scales, header.offsets = np.full(3, 0.001), np.floor(points[0, :3])
-    cloud = laspy.LasData(header)
-    cloud.x, cloud.y, cloud.z = points[:, :3].T
-    cloud.intensity = points[:, 3].astype(np.uint16)
-    path = QgsProcessingUtils.generateTempFilename("points.copc.laz")
-    write_copc(cloud, path)
-    return path
-
-
-def _intensities(path):
-    """A low and a high one of a cloud's first points."""
-    try:
-        return np.percentile(next(read_blocks(path, SAMPLE, layers=("intensity",))).intensity, (2, 98)).tolist()
-    except (RoadExtractionError, StopIteration):   # damaged, or without points
-        return 0.0, 65535.0
 
 
 def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     """Open a 3D view of the road map with the camera over the middle of the map window; False where QGIS could not open one.
 
-    Point clouds that the project shows come with it, else those of the survey where QGIS can show them: COPC, and with PDAL LAS and LAZ too.
-    Of others the points about the place come as soon as they are read.
+    Point clouds that the map shows come with it, else the points of the survey about the place, as soon as they are read.
     """
     project = QgsProject.instance()
     layers = give_3d_looks(road_map)
@@ -231,16 +169,16 @@ def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     if canvas is None:
         return False
     settings, view = canvas.mapSettings(), iface.mapCanvas()
-    shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)]
-    shown = shown or _clouds(road_map, project)
+    place = view.extent().center()
+    there = QgsCoordinateTransform(view.mapSettings().destinationCrs(), road_map.vectors[0].crs(), project).transform(place)
+    shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)
+             and (not layer.customProperty(POINTS) or layer.extent().scaled(0.5).contains(there))]
     settings.setLayers([*shown, *layers])
     settings.setTerrainRenderingEnabled(False)  # a flat one at height 0 would hide the road or hang far below it
     settings.setBackgroundColor(QColor("#e8edf2"))
-    place = view.extent().center()
     x, y, z = place.x(), place.y(), height_at(road_map, QgsGeometry.fromPointXY(place), view.mapSettings().destinationCrs(), project)
     canvas.cameraController().setLookingAtPoint(settings.mapToWorldCoordinates(QgsVector3D(x, y, z)), DISTANCE, PITCH, 0.0)
     if not shown:
-        there = QgsCoordinateTransform(view.mapSettings().destinationCrs(), road_map.vectors[0].crs(), project).transform(place)
         _bring_points(road_map, (there.x(), there.y()), canvas, project)
     return True
 

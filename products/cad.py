@@ -197,7 +197,7 @@ def landxml_text(alignments: Sequence[Alignment], crs: str = "", name: str = "Ro
         crs, alignments = file_wkt, [alignment.in_file(units) for alignment in alignments]
     return file_text("landxml.xml", namespace=NAMESPACE, moment=moment, unit=unit, crs=horizontal_part(parse_crs(crs)), name=name,
                     surface=_surface(surface, units.across if unit else 1.0) if surface is not None else None, alignments=alignments,
-                    places_of=_places, elements_of=_elements)
+                    elements_of=_elements)
 
 
 def _surface(model, unit):
@@ -208,44 +208,17 @@ def _surface(model, unit):
                 faces=(faces_of.reshape(-1, 3) + 1).tolist())
 
 
-def _places(places):
-    """Northing and easting of one place or (N, 2) places as text; of (N, 3) places their heights too."""
-    return " ".join(f"{y:.5f} {x:.5f}" + "".join(f" {z:.4f}" for z in height) for x, y, *height in np.atleast_2d(places))
-
-
-def _elements(alignment):
-    """(tag, attributes, {tag: places}) of what a line is made of."""
-    if alignment.plan is not None:
-        return map(_element, elements_without_reversal(alignment.plan))
-    places = alignment.places[:, :2]
-    return [("IrregularLine", {"length": alignment.length}, {"Start": places[0], "End": places[-1], "PntList2D": places})]
-
-
-def _element(piece):
-    """The same of an element."""
-    (start, end), (first, last), _ = piece.at(np.array([0.0, piece.length]))
-    along = {"length": piece.length, "staStart": piece.s}
-    if piece.kind == "line":
-        return "Line", {**along, "dir": _azimuth(first)}, {"Start": start, "End": end}
-    ways = {"rot": "ccw" if sum(piece.values) > 0 else "cw", "dirStart": _azimuth(first), "dirEnd": _azimuth(last)}
-    if piece.kind == "arc":
-        bend = piece.values[0]
-        return "Curve", {"rot": ways.pop("rot"), "crvType": "arc", "radius": abs(1 / bend), **along, "chord": float(np.hypot(*(end - start))),
-                         "delta": float(np.degrees(abs(bend) * piece.length)), **ways}, {
-            "Start": start, "Center": start + np.array([-np.sin(first), np.cos(first)]) / bend, "End": end}
-    chord, turn = end - start, np.sin(last - first)
-    # where the tangents at both ends meet; half-way where they are parallel
-    tangents_meet = (start + end) / 2 if abs(turn) < 1e-9 else start + np.array([np.cos(first), np.sin(first)]) * (
-        chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
-    radii = ("INF" if abs(bend) < 1e-9 else f"{abs(1 / bend):.6f}" for bend in piece.values)
-    return "Spiral", {"length": piece.length, **dict(zip(("radiusStart", "radiusEnd"), radii)), "rot": ways.pop("rot"), "spiType": "clothoid",
-                      "staStart": piece.s, "theta": float(np.degrees(abs(last - first))), **ways}, {
-        "Start": start, "PI": tangents_meet, "End": end}
-
-
-def _azimuth(heading: float) -> float:
-    """Degrees clockwise from north."""
-    return float((90.0 - np.degrees(heading)) % 360.0)
+def _elements(plan):
+    """Of each element of a line (itself, start, end, where its tangents meet or the centre of an arc, degrees clockwise from north at both ends,
+    degrees by which it turns, its chord)."""
+    for piece in elements_without_reversal(plan):
+        (start, end), (first, last), _ = piece.at(np.array([0.0, piece.length]))
+        chord, turn, turned, middle = end - start, np.sin(last - first), abs(last - first), (start + end) / 2   # half-way where they are parallel
+        if piece.kind == "arc":
+            middle, turned = start + np.array([-np.sin(first), np.cos(first)]) / piece.values[0], abs(piece.values[0]) * piece.length
+        elif abs(turn) >= 1e-9:
+            middle = start + np.array([np.cos(first), np.sin(first)]) * (chord[0] * np.sin(last) - chord[1] * np.cos(last)) / turn
+        yield piece, start, end, middle, (90.0 - np.degrees([first, last])) % 360.0, np.degrees(turned), np.hypot(*chord)
 
 
 def surface_lines(model: SurfaceModel) -> list[_DxfLine]:

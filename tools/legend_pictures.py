@@ -210,7 +210,6 @@ def surface_picture(run, folder, files, path):
     page.save(path)
 
 
-
 CORNER = (610412.0, 2710196.5)   # where two curbs of the crossing meet
 ARM = (610385.0, 2710190.0)      # its arm with crossing, stop lines and arrows
 

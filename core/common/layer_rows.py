@@ -53,11 +53,9 @@ def _columns_of(kind: type[LayerRows]) -> dict[str, _Column]:
     for attribute in fields(kind):  # type: ignore[arg-type]
         if _KEY in attribute.metadata:
             name, unknown = attribute.metadata[_KEY]
-            usual = {int: -1, float: np.nan, str: ""}[schema[name or attribute.name].type]
-            has_unknown = unknown is not None
-            unknown = unknown if has_unknown else usual
-            columns[attribute.name] = _Column(schema[name or attribute.name], unknown, object if isinstance(unknown, str) else type(unknown),
-                                              has_unknown)
+            field, given = schema[name or attribute.name], unknown is not None
+            unknown = unknown if given else {int: -1, float: np.nan, str: ""}[field.type]
+            columns[attribute.name] = _Column(field, unknown, object if isinstance(unknown, str) else type(unknown), given)
     return columns
 
 

@@ -11,7 +11,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from itertools import islice
@@ -270,23 +270,16 @@ def _claim_for_products(threads):
     matrix, together = np.ones((BLAS_SIZE, BLAS_SIZE)), threading.Barrier(threads)
 
     def multiply():
-        with suppress(threading.BrokenBarrierError):
-            together.wait()
-            np.dot(matrix, matrix)
+        together.wait()
+        np.dot(matrix, matrix)
 
-    started = []
-    try:
-        for _ in range(threads):
-            started.append(threading.Thread(target=multiply, daemon=True))
-            started[-1].start()
-    except RuntimeError as error:
-        raise MemoryError(str(error)) from error
-    finally:
-        if len(started) < threads or not all(thread.ident for thread in started):
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for _ in range(threads):
+                pool.submit(multiply)
+        except (RuntimeError, MemoryError) as error:  # no further thread
             together.abort()
-        for thread in started:
-            if thread.ident:
-                thread.join()
+            raise MemoryError(str(error)) from error
     dgemm(1.0, matrix, matrix)
 
 

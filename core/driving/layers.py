@@ -78,7 +78,6 @@ class Lanes(LayerRows):
         middle = (self.left + self.right)[:, :2] / 2
         return np.array([np.hypot(*np.diff(middle[a:b], axis=0).T).sum() for a, b in zip(self.start[:-1], self.start[1:])])
 
-
     def on_map(self, frame: RoadFrame | None) -> list[Any]:
         """P polygons with Z in map coordinates, in which lanes are where there is no frame. The ring runs along the left border and back along
         the right one, with a vertex of each for every place along the lane."""

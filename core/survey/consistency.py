@@ -31,20 +31,17 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
 
     Raises RoadExtractionError if more than half of them disagree.
     """
-    agree, aside, above = [], [], []
+    seen = []
     for geometry, row in features:
         if row.get("station_m") is None:
             continue
         x, y, z = shapely.get_coordinates(geometry, include_z=True).T
         s, d = _located(frame, row["road"], x, y)
         inside = np.isfinite(s)
-        if inside.any():
-            above.append(np.median(_above(frame, row["road"], s[inside], z[inside])))
-        agree.append(bool(inside.any()) and abs(_outside(s[inside], row["station_m"])) <= FRAME.station_tolerance)
-        if agree[-1] and row.get("offset_m") is not None:
-            aside.append(_outside(d[inside], row["offset_m"]))
-    _refuse_mismatch(agree, label, "features")
-    _refuse_moved(aside, above, label)
+        above = [np.median(_above(frame, row["road"], s[inside], z[inside]))] if inside.any() else []
+        agrees = bool(above) and abs(_outside(s[inside], row["station_m"])) <= FRAME.station_tolerance
+        seen.append(([agrees], [_outside(d[inside], row["offset_m"])] if agrees and row.get("offset_m") is not None else [], above))
+    _refuse_misplaced(seen, label, "features")
 
 
 def keep_near_roads(features: Features, frame: RoadFrame, label: str) -> str:
@@ -87,16 +84,12 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
 
     Raises RoadExtractionError if more than half of the sampled points disagree.
     """
-    agree, aside, above = [], [], []
+    seen = []
     for road, x, y, s, d, z in sample_road_points(road_points):
         station, offset = _located(frame, road, x, y)
-        agree.append(np.abs(station - s) <= FRAME.station_tolerance)
-        aside.append((d - offset)[agree[-1]])
-        if agree[-1].any():
-            above.append(_above(frame, road, s[agree[-1]], z[agree[-1]]))
-    _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
-    across, down = (np.concatenate(column) if column else [] for column in (aside, above))
-    _refuse_moved(across, down, label)
+        agree = np.abs(station - s) <= FRAME.station_tolerance
+        seen.append((agree, (d - offset)[agree], _above(frame, road, s[agree], z[agree]) if agree.any() else []))
+    _refuse_misplaced(seen, label, "points looked at")
 
 
 def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
@@ -130,17 +123,18 @@ def _above(frame, road, s, z):
     return np.where(z == 0.0, np.nan, frame.track_height(road, s) + frame.origin[2] - z)
 
 
-def _refuse_mismatch(agree, label, what):
-    agree = np.asarray(agree, bool)
+def _refuse_misplaced(seen, label, what):
+    """Refuse what for the most part disagrees with its stations, lies beside its offsets, or lies where no vehicle is.
+
+    seen : of each part whether its entries agree, (N,) m that they lie to the left, and (M,) m that they lie below the trajectory
+    """
+    if not seen:
+        return
+    agree, beside, above = (np.concatenate(column) for column in zip(*seen))
+    above = above[np.isfinite(above)]
     if len(agree) and agree.mean() < 0.5:
         raise RoadExtractionError(f"{label} and the trajectory do not belong together: only {np.count_nonzero(agree)} of {len(agree)} {what} lie at "
                                   "the station they carry. Give the trajectory that they were made with, whole.")
-
-
-def _refuse_moved(beside, above, label):
-    """Refuse what lies beside its offsets, (N,) m to the left, or where no vehicle is, (M,) m below the trajectory, for the most part."""
-    beside, above = np.asarray(beside, float), np.asarray(above, float)
-    above = above[np.isfinite(above)]
     if np.count_nonzero(np.abs(beside) > FRAME.offset_tolerance) > 0.5 * len(beside):
         raise RoadExtractionError(f"{label} lie {np.median(np.abs(beside)):.2f} m beside the offsets they carry: {WITH_ANOTHER}")
     if np.count_nonzero((above < -VEHICLE.lowest_sensor) | (above > MIRROR.heights[1])) > 0.5 * len(above):

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ...survey.frame.row_table import RowTable, stacked
-from ...survey.store.seen import FAR
+from ...survey.store.records import FAR
 from ..weights import LANES
 from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights

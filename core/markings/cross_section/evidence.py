@@ -15,8 +15,8 @@ from ...road.surface.extract import SurfaceSettings
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import RowTable
+from ...survey.store.records import BIN, BINS, FAR
 from ...survey.store.road_points import RoadPoints
-from ...survey.store.seen import BIN, BINS, FAR
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE

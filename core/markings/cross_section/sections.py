@@ -14,7 +14,7 @@ from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
-from ...survey.store.seen import STATION_STEP
+from ...survey.store.records import STATION_STEP
 from ..weights import SECTIONS
 
 if TYPE_CHECKING:

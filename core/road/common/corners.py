@@ -43,7 +43,6 @@ class CurbSteps(Rows):
         return np.ones(len(self), bool)
 
 
-
 def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float) -> CurbSteps:
     """The step at each rising cell, where it proves to be one.
 

@@ -304,7 +304,6 @@ def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
 
     Following lags behind on a crowned road. A mean over 5 rows and 3 columns, weighted by points, does not.
 
-
     Returns (R, C) m, local z
     """
     # a running mean along the road depends on its rows, and not on other columns

@@ -8,10 +8,9 @@ import numpy as np
 from scipy import ndimage
 
 from ...survey.density import CountedCubes, counted_cubes
-from ...survey.store.records import COORDINATE_SCALE, Points, points_of_scanners
+from ...survey.store.records import COORDINATE_SCALE, Points, Seen, points_of_scanners, seen_in_section
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import StoreIndex, Stretch
-from ...survey.store.seen import Seen, seen_in_section
 from ..weights import SURFACE
 from .pavement_edge import Carriageway
 

@@ -255,12 +255,8 @@ class SectionStore:
 
     def first_unit(self, section: int) -> int:
         """The least station, in units of 0.1 mm, that lies in a section."""
-        unit = int(round(section * self.section_length / COORDINATE_SCALE))
-        while np.floor((unit - 1) * COORDINATE_SCALE / self.section_length) >= section:
-            unit -= 1
-        while np.floor(unit * COORDINATE_SCALE / self.section_length) < section:
-            unit += 1
-        return unit
+        return _least(int(round(section * self.section_length / COORDINATE_SCALE)),
+                      lambda unit: np.floor(unit * COORDINATE_SCALE / self.section_length) >= section)
 
     def window(self, road: int, start: float, end: float) -> Points:
         """Points of a road with start <= station < end (metres), in canonical order."""
@@ -372,12 +368,17 @@ def opened_store(folder: str | Path, columns: list[list[str]], section_length: f
 
 def _unit_at(station):
     """The least whole number of units of 0.1 mm whose station is not less than some metres."""
-    unit = int(np.ceil(station / COORDINATE_SCALE))
-    while (unit - 1) * COORDINATE_SCALE >= station:
-        unit -= 1
-    while unit * COORDINATE_SCALE < station:
-        unit += 1
+    unit = _least(int(np.ceil(station / COORDINATE_SCALE)), lambda unit: unit * COORDINATE_SCALE >= station)
     return min(max(unit, LEAST_UNIT), MOST_UNIT)
+
+
+def _least(unit, enough):
+    """The least whole number, near a given one, from which on it is enough."""
+    while enough(unit - 1):
+        unit -= 1
+    while not enough(unit):
+        unit += 1
+    return unit
 
 
 # The order in which a section returns its points, each once: it does not depend on the order of the files, nor on how far these overlap.

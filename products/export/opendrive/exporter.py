@@ -116,10 +116,8 @@ class _Drafting:
                 ways, rest = _ways_cut_off(part)
                 inside += ways
                 ordinary += rest
-        inside_ids = {id(cell) for part in inside for cell in part.cells} | {id(cell) for cell in self.cells if cell.is_connector}
-        ordinary, between = _between_junctions(ordinary, inside_ids)
         return (_ordinary_roads(ordinary) + [(strip, False) for strip in strips_of(beside, set())]
-                + _ways_through([way for part in inside + between for way in part.ways()] + self.connectors, is_stated(self.lanes)))
+                + _ways_through([way for part in inside for way in part.ways()] + self.connectors, is_stated(self.lanes)))
 
     def shaped(self, strips: list[list[Slice]], progress: Progress) -> list[tuple[RoadShape, list[Slice], list[int]]]:
         """For each road its shape, its slices, and the number of the border in each at which lane 0 lies."""
@@ -230,19 +228,6 @@ def _said_open_ends(whole: OpenDriveMap) -> list[str]:
                     count += len(ends)
     return [f"{count} ends of driven lanes are linked to no lane, since the survey shows none there, though their roads go on; userData of the "
             f"lanes says so."] if count else []
-
-
-def _between_junctions(slices, inside):
-    """(slices, those of them that are too short for a road and touch only ways through junctions, at both ends)."""
-    between = []
-    while True:
-        short = [part for part in slices if part.driven and part.length < SHORTEST_WAY and all(
-            neighbours and inside.issuperset(map(id, neighbours)) for neighbours in (part.beyond(False), part.beyond(True)))]
-        if not short:
-            return slices, between
-        between += short
-        inside = inside | {id(cell) for part in short for cell in part.cells}
-        slices = [part for part in slices if not any(part is added for added in short)]
 
 
 def _ordinary_roads(slices):

@@ -27,7 +27,6 @@ BEND_STEP = 0.25         # m between the places at which a border is held agains
 LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
 END_ROUNDS = 4
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
-MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
 
 
 @dataclass
@@ -69,15 +68,12 @@ def shape_steps(strip: list[Slice], centres: list[int], tolerance: float) -> Ste
     tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
     """
     guide, index, along, keep = _guided(strip, centres)
-    for square in (False, True):
-        ends, widest = _end_headings(strip, guide, square)
-        plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
-        shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
-        if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
-            shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
-        plan, s_all, t_all, is_square = _square_ends(plan, strip, shown, near)
-        if is_square:
-            break   # else a curve is too tight to go on in: the ends become square
+    ends, widest = _end_headings(strip, guide)
+    plan, follows = yield from _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
+    shown, near = strip, [along[rows] * plan.length / along[-1] for rows in index]
+    if not follows:   # seen from a line that cuts a corner, a border is not straight from vertex to vertex
+        shown, near = (list(values) for values in zip(*(_finer(part, s) for part, s in zip(strip, near))))
+    plan, s_all, t_all = _square_ends(plan, strip, shown, near)
     strip = shown
     for s in s_all:   # two vertices of every border nearly at one place are a step across the road: all borders have the same s there
         for k in np.flatnonzero((np.diff(s.mean(0)) < STEP_RUN) & (np.ptp(s[:, :-1], axis=0) < 2 * STEP_RUN)):
@@ -102,7 +98,7 @@ def _guided(strip, centres):
 
 
 def _square_ends(plan, strip, shown, near):
-    """(the reference line with what makes its ends square, s and t of the vertices from it, whether they are).
+    """(the reference line with what makes its ends square, s and t of the vertices from it).
 
     near : for each slice (n,) metres along the road
     """
@@ -117,9 +113,9 @@ def _square_ends(plan, strip, shown, near):
         before = 0.0 if strip[0].beyond(False) else max(-float(s_all[0][:, 0].min()), 0.0)
         after = 0.0 if strip[-1].beyond(True) else max(float(s_all[-1][:, -1].max()) - plan.length, 0.0)
         if max(before, after) < LEAST_STEP:
-            return plan, s_all, t_all, True
+            break
         plan, near = plan.lengthened(before, after), [s + before for s in near]
-    return plan, s_all, t_all, False
+    return plan, s_all, t_all
 
 
 def _finer(one, s):
@@ -237,9 +233,8 @@ def _smoothed(points, width):
     return np.stack([np.convolve(column, weights / weights.sum(), mode="valid") for column in padded.T], axis=1)
 
 
-def _end_headings(strip, guide, square):
-    """((start, end) headings square to the ends at which the road meets another, or to all if `square`, None where they are cut obliquely;
-    metres, its width)."""
+def _end_headings(strip, guide):
+    """((start, end) headings square to the ends at which the road meets another, None where they are cut obliquely; metres, its width)."""
     headings, widest = [], 0.0
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     near, far = (int(np.clip(np.searchsorted(along, distance), 1, len(guide) - 1)) for distance in (END_CHORD, along[-1] - END_CHORD))
@@ -249,7 +244,7 @@ def _end_headings(strip, guide, square):
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
         oblique = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        headings.append(heading if (meets or square) and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
+        headings.append(heading if meets and np.hypot(*across) > LEAST_END and oblique < MOST_OBLIQUE else None)
     return tuple(headings), widest
 
 
@@ -333,26 +328,13 @@ def _lines_of_lane_0(sections, centres, lengths, first):
         for k in range(first + way, len(sections) if way > 0 else -1, way):
             line, before = sections[k][centres[k]], lines[k - way]
             value, start_value = float(before.at(lengths[k - way] * -before_end)), float(line.at(lengths[k] * -line_start))
-            aside = before is not sections[k - way][centres[k - way]]
-            if abs(start_value - value) <= (MOST_LEAD if aside else SAME_LINE):
+            if abs(start_value - value) <= SAME_LINE:
                 lines[k] = line
-                if aside:   # lead there
-                    ends = (float(before.at(0.0)), start_value) if way > 0 else (start_value, float(before.at(lengths[k - way])))
-                    lines[k - way] = _straight(before, *ends, lengths[k - way])
             else:
-                straight = _straight(line, value, value, lengths[k])
+                straight = Cubics(np.c_[line.rows[:, 0], np.full(len(line), value), np.zeros((len(line), 3))])
                 room = difference(straight, line) if centres[k] == 0 else difference(line, straight) if centres[k] == len(sections[k]) - 1 else None
                 lines[k] = straight if room is not None and room.least(lengths[k])[0] >= 0.0 else line
     return [lines[k] for k in range(len(sections))]
-
-
-def _straight(like, first, last, length):
-    """A straight function with the pieces of another."""
-    rows = np.zeros_like(like.rows)
-    slope = (last - first) / length
-    rows[:, 0], rows[:, 2] = like.rows[:, 0], slope
-    rows[:, 1] = first + slope * rows[:, 0]
-    return Cubics(rows)
 
 
 def _slope_at(place, course):

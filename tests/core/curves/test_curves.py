@@ -130,8 +130,6 @@ def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
     assert np.abs(truth.project(*fit.curve.sample(0.5).T)[1]).max() < 0.02
 
 
-
-
 def test_an_alignment_is_cut_into_its_elements():
     elements, = element_ranges([along([(0, 0, 60), (0, 1 / 80, 40), (1 / 80, 1 / 80, 60), (1 / 80, 0, 40), (0, 0, 40)])])
     assert [kind for *_, kind in elements] == ["line", "clothoid", "circle", "clothoid", "line"]
@@ -174,8 +172,6 @@ def test_the_foot_of_a_point_gives_back_where_it_was_put():
         found_u, found_e = curve.project(x, y)
         np.testing.assert_allclose(found_u, u, atol=1e-5)
         np.testing.assert_allclose(found_e, 3.0, atol=1e-6)
-
-
 
 
 @pytest.mark.parametrize("kind", ["line", "circle", "clothoid", "b-spline"])

@@ -40,7 +40,6 @@ def test_only_what_lies_in_the_area_counts():
     assert compare_lines([beyond], [REFERENCE], area=box(0, -5, 100, 5)).correctness[0.05] == 1.0
 
 
-
 def test_two_lines_that_cross_match_only_where_any_direction_will_do():
     across = LineString([(50, -50, 10), (50, 50, 10)])
     assert compare_lines([across], [REFERENCE], max_angle=15).correctness[0.20] == 0.0

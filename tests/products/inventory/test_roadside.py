@@ -28,7 +28,6 @@ def from_edge(found, line):
     return found.edges[line.chain.road].beyond(line.chain.side, line.chain.s, line.chain.d)
 
 
-
 def found_in(survey, edges, **settings):
     return find_roadside(survey, BorderLayers(edges=edges), RoadsideSettings(**settings))
 

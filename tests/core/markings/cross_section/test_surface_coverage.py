@@ -6,9 +6,8 @@ import curbed_streets as streets
 import numpy as np
 from lanewright.core.markings.cross_section.evidence import surface_coverage
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.survey.store.records import COORDINATE_SCALE
+from lanewright.core.survey.store.records import BIN, COORDINATE_SCALE, FAR, STATION_STEP
 from lanewright.core.survey.store.road_points import RoadPoints
-from lanewright.core.survey.store.seen import BIN, FAR, STATION_STEP
 
 STATIONS = 10.0 + STATION_STEP * np.arange(40)   # m: 10 to 29.5
 
