@@ -188,7 +188,7 @@ def _parts(boundaries, estimate, lane_width, line_distance):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
-        if span.count > 1 or bare.any() and not (apart or bare.all() or beside_island(*drawn)):
+        if span.count == 2 or bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
             part = _where_driven(part, boundaries.s, estimate, span, lane_width, not bare.any())
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
             drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
