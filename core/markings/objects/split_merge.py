@@ -164,11 +164,7 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
     """
     size = CELL_UNITS * COORDINATE_SCALE
     strips = _linked(cells[rows], gap / size, gap_across / size)
-    number = strips.max(initial=-1) + 1
-    first, last = np.full(number, np.inf), np.full(number, -np.inf)
-    np.minimum.at(first, strips, cells[rows, 0])
-    np.maximum.at(last, strips, cells[rows, 0])
-    long = (last - first) * size >= least
+    long = np.array([np.ptp(cells[rows[members], 0]) for _, members in members_of(strips)]) * size >= least
     parts[rows] = np.where(long, count + np.cumsum(long) - 1, -1)[strips]
     return count + int(long.sum())
 
