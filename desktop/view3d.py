@@ -41,7 +41,7 @@ from .background import with_points
 DARK, BRIGHT = "#3c4045", "#ffffff"
 CURB_WIDTH = 0.12     # m
 UNKNOWN_HEIGHT = 0.12  # m that a curb is drawn high whose height is not known
-POINTS = "lanewright/points"   # custom property of a layer of points about a place, which give way to those about the next
+POINTS = "lanewright/points"   # custom property of a layer of points about a place; QGIS ends where one goes while a view still loads it
 WALLS = "lanewright/walls_of"  # custom property of a layer with curbs for the 3D view: the edges that it shows
 SHOWN = ("ROAD_SURFACE", "MARKINGS", "ROAD_EDGES", "DRIVING_LINES")   # results; of dashed lines the dashes are markings
 AROUND, MOST = 80.0, 4_000_000   # m about the place from which points come, and how many
@@ -112,7 +112,6 @@ def _bring_points(road_map, place, canvas, project):
     def ready(task, made, problem):
         TASKS.discard(task)
         if made is not None and not sip.isdeleted(canvas) and all(project.mapLayer(layer.id()) for layer in road_map.vectors):
-            project.removeMapLayers([layer.id() for layer in project.mapLayers().values() if layer.customProperty(POINTS)])
             cloud, settings = _cloud(*made, title, road_map.vectors[0].crs()), canvas.mapSettings()
             project.addMapLayer(cloud, False)
             (road_map.group or project.layerTreeRoot()).addLayer(cloud)
@@ -170,15 +169,16 @@ def show_in_3d(iface: QgisInterface, road_map: RoadMap, title: str) -> bool:
     if canvas is None:
         return False
     settings, view = canvas.mapSettings(), iface.mapCanvas()
-    shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer) and not layer.customProperty(POINTS)]
+    place = view.extent().center()
+    there = QgsCoordinateTransform(view.mapSettings().destinationCrs(), road_map.vectors[0].crs(), project).transform(place)
+    shown = [layer for layer in view.layers() if isinstance(layer, QgsPointCloudLayer)
+             and (not layer.customProperty(POINTS) or layer.extent().scaled(0.5).contains(there))]
     settings.setLayers([*shown, *layers])
     settings.setTerrainRenderingEnabled(False)  # a flat one at height 0 would hide the road or hang far below it
     settings.setBackgroundColor(QColor("#e8edf2"))
-    place = view.extent().center()
     x, y, z = place.x(), place.y(), height_at(road_map, QgsGeometry.fromPointXY(place), view.mapSettings().destinationCrs(), project)
     canvas.cameraController().setLookingAtPoint(settings.mapToWorldCoordinates(QgsVector3D(x, y, z)), DISTANCE, PITCH, 0.0)
     if not shown:
-        there = QgsCoordinateTransform(view.mapSettings().destinationCrs(), road_map.vectors[0].crs(), project).transform(place)
         _bring_points(road_map, (there.x(), there.y()), canvas, project)
     return True
 

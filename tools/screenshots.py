@@ -189,6 +189,7 @@ def view3d():
     wait(30)  # the octree is read and drawn in the background, of which nothing tells when it is done
     save(QGuiApplication.primaryScreen().grabWindow(view.winId()), "window_3d")
     view.close()
+    wait(3)  # QGIS ends where points go while a view still loads them
 
 
 def pairs():

@@ -216,7 +216,8 @@ def _contents(value):
     # as they lie in memory, so that whoever reads them computes with the same order of numbers
     turned = [array.ndim > 1 and array.flags.f_contiguous and not array.flags.c_contiguous for array in arrays]
     text = json.dumps([tree, [[np.lib.format.dtype_to_descr(array.dtype), array.shape, last] for array, last in zip(arrays, turned)]]).encode()
-    return [TEXT_LENGTH.pack(len(text)) + text, *(_bytes_of(np.ascontiguousarray(array.T if last else array)) for array, last in zip(arrays, turned))]
+    return [TEXT_LENGTH.pack(len(text)) + text, *(np.ascontiguousarray(array.T if last else array).reshape(-1).view(np.uint8)
+                                                                  for array, last in zip(arrays, turned))]
 
 
 def read_plain(path: Path) -> Any:
@@ -264,11 +265,6 @@ def checksum(file: BinaryIO, count: int = -1) -> int:
     while data := file.read(min(CHECKED_AT_ONCE, count) if count >= 0 else CHECKED_AT_ONCE):
         check, count = zlib.crc32(data, check), count - len(data) if count >= 0 else count
     return check
-
-
-def _bytes_of(array):
-    """(B,) uint8, a view of a contiguous array."""
-    return array.reshape(-1).view(np.uint8)
 
 
 def digest(value: Any, without: str = "") -> str:

@@ -44,7 +44,11 @@ class WorkerProcesses(FolderExecutor):
         """What a free worker answers to a task of a phase; KilledWorker where several ended instead, or the phase has ended."""
         last = ""
         for _ in range(EXECUTION.trials):
-            worker = self._free_worker()
+            try:
+                worker = self._idle.get_nowait()
+            except queue.Empty:
+                worker = _Worker(self.interpreter, self.folder)
+                self._all.add(worker)
             worker.phase = phase
             # who ends a phase removes its file, then kills its workers
             answer = worker.answer_to([phase, *task]) if Path(phase).exists() else None
@@ -57,14 +61,6 @@ class WorkerProcesses(FolderExecutor):
             if not Path(phase).exists():
                 break
         raise KilledWorker(last)
-
-    def _free_worker(self):
-        try:
-            return self._idle.get_nowait()
-        except queue.Empty:
-            worker = _Worker(self.interpreter, self.folder)
-            self._all.add(worker)
-            return worker
 
     def end_pool(self, pool: ThreadPoolExecutor, phase: Path) -> None:
         pool.shutdown(wait=False, cancel_futures=True)

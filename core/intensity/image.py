@@ -252,9 +252,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
             for tile in filter(None, tiles):
                 image.put(*tile)
                 if file is not None:
-                    file.write(*tile)
-                    # compressed by another thread while the next tiles are made
-                    file.flush()
+                    file.write(*tile, whole=True)
     progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 

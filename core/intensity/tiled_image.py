@@ -64,8 +64,7 @@ class TiledImage(IntensityImage):
         with new_geotiff(path, self.width, self.height, self.geotransform, self.crs, like=like) as file:
             for column, row in self.tiles() if like is None else shown.lost:
                 values = self.read_pixels(column, row, min(GEOTIFF_TILE, self.width - column), min(GEOTIFF_TILE, self.height - row))
-                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values))
-                file.flush()
+                file.write(column, row, np.where(np.isnan(values), np.float32(NODATA), values), whole=True)
             yield file
         self._written = Path(path), _state_of(path)
 

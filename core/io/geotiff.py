@@ -179,22 +179,18 @@ class _NewGeoTiff:
         self._dataset.GetRasterBand(1).SetDescription(description)
 
     @gdal_exceptions()
-    def write(self, column: int, row: int, values: np.ndarray) -> None:
-        """Write (H, W) pixels, the first at (column, row); other threads compress them once `flush` is called."""
-        height, width = values.shape
-        data = np.ascontiguousarray(values, self._dtype).tobytes()
-        self._dataset.GetRasterBand(1).WriteRaster(column, row, width, height, data, buf_type=self._type)
+    def write(self, column: int, row: int, values: np.ndarray, whole: bool = False) -> None:
+        """Write (H, W) pixels, the first at (column, row); where they are all of a tile, other threads compress it while the work goes on."""
+        (height, width), band = values.shape, self._dataset.GetRasterBand(1)
+        band.WriteRaster(column, row, width, height, np.ascontiguousarray(values, self._dtype).tobytes(), buf_type=self._type)
+        if whole:
+            band.FlushCache()
 
     @gdal_exceptions()
     def read(self, column: int, row: int, width: int, height: int) -> np.ndarray:
         """(height, width) pixels as written so far, a copy."""
         data = self._dataset.GetRasterBand(1).ReadRaster(column, row, width, height, buf_type=self._type)
         return np.frombuffer(data, self._dtype).reshape(height, width).copy()
-
-    @gdal_exceptions()
-    def flush(self) -> None:
-        """Pass what was written to the file, which compresses it while the work goes on."""
-        self._dataset.GetRasterBand(1).FlushCache()
 
     @gdal_exceptions()
     def close(self) -> None:

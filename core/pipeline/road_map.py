@@ -54,7 +54,7 @@ from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.las.reader import read_headers
+from ..survey.las.reader import CloudHeader, read_headers
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
@@ -138,13 +138,14 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     Raises RoadExtractionError if a stage cannot use its input. A cloud without intensity still yields edges and surface; `without_paint` then
         gives the reason why markings are missing.
     """
-    stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
+    files = read_headers(paths, given=settings.survey.crs or trajectory.crs)
+    stages = Stages(progress, Extent.expected(files, trajectory, settings.survey.crs), settings.boundary_method,
                     () if settings.correct else ("asphalt", "intensity"))
-    if kept.wanted and _may_be_kept(paths, settings.execution) and kept.take():
+    if kept.wanted and _may_be_kept(files, settings.execution) and kept.take():
         stages.kept = kept
     survey, ground = None, None
     try:
-        survey, ground = stages.run("survey", "Reading the survey …", _open, paths, trajectory, settings.survey, settings.execution,
+        survey, ground = stages.run("survey", "Reading the survey …", _open, files, trajectory, settings.survey, settings.execution,
                                     stages.kept is not None,
                                     depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
                                     free=lambda opened: opened[0].store.close())
@@ -162,17 +163,17 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         raise
 
 
-def _open(paths, trajectory, settings, execution, remembers, progress):
+def _open(files, trajectory, settings, execution, remembers, progress):
     """The survey, whose executor `remembers` results or not, and its ground, which is measured where it is asked for."""
-    survey = open_survey(paths, trajectory, settings, progress, execution)
+    survey = open_survey(files, trajectory, settings, progress, execution)
     if remembers:
         survey.executor = RememberedResults(survey.executor)
     return survey, MeasuredGround(survey)
 
 
-def _may_be_kept(paths, execution):
+def _may_be_kept(files, execution):
     """Whether a run may be kept: where no work folder does so, no workers of others are held, and as much disk space is left as it takes."""
-    taken = sum(header.count for header in read_headers(paths)) * (SURVEY_POINT.itemsize + ROAD_POINT.itemsize)
+    taken = sum(file.count for file in files) * (SURVEY_POINT.itemsize + ROAD_POINT.itemsize)
     return not execution.work_folder and not execution.scheduler and shutil.disk_usage(tempfile.gettempdir()).free > 2 * taken
 
 
@@ -219,17 +220,13 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
         stages.progress.warn(result.without_paint)
+    lost = map_corrections.unmatched
     if len(map_corrections):
-        _tell_corrections(map_corrections, stages.progress)
+        stages.progress.info(f"Corrections: {len(map_corrections)}, of which {len(map_corrections) - len(lost)} were made.")
+    if lost:
+        stages.progress.warn(f"Corrections that match nothing in this run any more ({len(lost)}): "
+                             + "; ".join(correction.described() for correction in lost) + ".")
     return result
-
-
-def _tell_corrections(corrections, progress):
-    """Say in the log how many corrections were made, and list those that match nothing."""
-    progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
-    if corrections.unmatched:
-        progress.warn(f"Corrections that match nothing in this run any more ({len(corrections.unmatched)}): "
-                      + "; ".join(correction.described() for correction in corrections.unmatched) + ".")
 
 
 def _span(survey):
@@ -321,12 +318,11 @@ class Extent:
     plain: float = 0.0   # share of the points in uncompressed files
 
     @classmethod
-    def expected(cls, paths: Sequence[str | Path], trajectory: Trajectory, crs: str = "") -> Extent:
+    def expected(cls, files: Sequence[CloudHeader], trajectory: Trajectory, crs: str = "") -> Extent:
         """The extent by file headers and trajectory, before any point is read; `crs` is that of clouds that carry none.
 
-        Raises RoadExtractionError if a header cannot be read or the CRS is unsuitable, as in `open_survey`.
+        Raises RoadExtractionError if the CRS is unsuitable, as in `open_survey`.
         """
-        files = read_headers(paths, given=crs or trajectory.crs)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
         filled = [file for file in files if file.count]
         points = sum(file.count for file in filled)
@@ -384,18 +380,19 @@ class Stages:
         if title:
             self.progress.info(title)
         began = time.perf_counter()
-        if self.kept is not None and depends is not None:
+        kept = None if depends is None else self.kept
+        if kept is not None:
             self._digest = digest((self._digest, name, depends() if callable(depends) else depends))
-        if self.kept is not None and depends is not None and self.kept.known(name, self._digest):
+        if kept is not None and kept.known(name, self._digest):
             self.progress.info("The result of the last run is used again.")
-            result = self.kept.result(name)
+            result = kept.result(name)
             again(result)
         else:
-            if renewed and self.kept is not None:
-                options["before"] = self.kept.before(name)
+            if renewed and kept is not None:
+                options["before"] = kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
-            if self.kept is not None and depends is not None:
-                self.kept.keep(name, self._digest, result, partial(free, result), renewed)
+            if kept is not None:
+                kept.keep(name, self._digest, result, partial(free, result), renewed)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

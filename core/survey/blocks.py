@@ -25,7 +25,7 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
 from .store.section_store import PartitionedPoints, SectionStore, StoreIndex
 from .trajectory.time_systems import unwrap_week
-from .weights import FRAME, READING
+from .weights import FRAME, READING, VEHICLE
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags", "classification")  # LAZ layers that are decoded
 
@@ -105,6 +105,7 @@ class _ChosenPoints:
     histogram: HeightHistogram   # histogram, coverage, brightness: of those on the vehicle's own track
     coverage: _Coverage
     brightness: _Brightness
+    file: int = 0   # number of the one that points are taken from
     sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
@@ -139,6 +140,8 @@ class _BlockReader:
             if sum(map(len, samples)) > READING.height_samples or looked_at > READING.max_waiting_points:
                 break
         drops = np.concatenate([np.empty(0, np.int32), *samples])
+        under = drops[drops > round(VEHICLE.lowest_sensor / COORDINATE_SCALE)]   # in a tunnel as much lies above
+        drops = under if len(under) > READING.least_road_share * len(drops) else drops
         return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
 
     def read(self, block: Any, summary: _BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
@@ -154,7 +157,7 @@ class _BlockReader:
             s = points["s"].take(rows)
             chosen.histogram.add(number, drops)
             chosen.coverage.add(number, s, drops)
-            chosen.brightness.add(number, s, points["intensity"].take(rows))
+            chosen.brightness.add(number, chosen.file, s, points["intensity"].take(rows))
         if self.choice.has_time:
             kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
             rows = np.flatnonzero(kept if mask is None else kept & mask)
@@ -304,7 +307,6 @@ def _both(one, other):
 
 _RESOLUTION_UNITS = round(READING.height_resolution / COORDINATE_SCALE)
 OWN_TRACK_HALF_WIDTH_UNITS = round(READING.own_track_half_width / COORDINATE_SCALE)
-CountedCells = tuple[int, int, np.ndarray]   # number of a pass, its first cell that has points, and the counts from there on
 
 
 class VehicleTracks:
@@ -371,15 +373,9 @@ class HeightHistogram:
 
     def add(self, number: int, drops: np.ndarray) -> None:
         """Count points on the track of a pass; (N,) int32 depths below the trajectory in units of 0.1 mm."""
-        size = int(2 * READING.height_range / READING.height_resolution)
-        k = drops - np.int32(round(self.origin / COORDINATE_SCALE) - _RESOLUTION_UNITS // 2)
-        k //= _RESOLUTION_UNITS
-        if k.min() < 0 or k.max() >= size:
-            k = k[(k >= 0) & (k < size)]
-        least = int(k.min(initial=size))
-        k -= least
-        counted = np.bincount(k)
-        self.counts[number][least:least + len(counted)] += counted
+        k = (drops - np.int32(round(self.origin / COORDINATE_SCALE) - _RESOLUTION_UNITS // 2)) // _RESOLUTION_UNITS
+        size = len(self.counts[number])
+        self.counts[number] += np.bincount(k[(k >= 0) & (k < size)], minlength=size)
 
     def join(self, counts: dict[int, np.ndarray]) -> None:
         """Add the counts of another histogram of the same passes and the same first estimate."""
@@ -409,9 +405,12 @@ def sensor_height_of(drops: np.ndarray) -> float | None:
 
 
 def _road_height(counts, origin):
-    """The median about the fullest decimetre of a histogram per millimetre; None for too few points."""
+    """The median about the fullest decimetre of a histogram per millimetre, of those under a scanner if many are; None for too few points."""
     if counts.sum() <= READING.min_track_points:
         return None
+    under = np.arange(len(counts)) * READING.height_resolution + origin > VEHICLE.lowest_sensor
+    if counts[under].sum() > READING.least_road_share * counts.sum():   # the ceiling of a tunnel is nearer than the road
+        counts = np.where(under, counts, 0)
     bins = counts.reshape(-1, int(round(READING.height_peak_bin / READING.height_resolution))).sum(axis=1)
     # neighbouring bins count too: the road may lie on the border of two bins
     peak = int(np.argmax(np.convolve(bins, np.ones(3), "same")))
@@ -422,47 +421,55 @@ def _road_height(counts, origin):
     return round(float(origin + (first + np.searchsorted(near, (near[-1] + 1) // 2)) * READING.height_resolution), 3)
 
 
-class _Coverage:
-    """Counts of the points on the vehicle's own track, by pass, cell of station and depth below the trajectory.
+CountsByCell = dict[Any, dict[int, np.ndarray]]   # {key: {cell of station: counts}}
 
-    They do not depend on the order of adding. about : m, first estimate of the height of the trajectory above the road
+
+class _TrackCounts:
+    """Counts of the points on the vehicle's own track by cell of station, whatever the order of adding."""
+
+    def __init__(self) -> None:
+        self.counts: CountsByCell = {}
+
+    def join(self, others: CountsByCell) -> None:
+        """Add the counts of other points."""
+        for key, rows in others.items():
+            of_key = self.counts.setdefault(key, {})
+            for cell, row in rows.items():
+                of_key[cell] = of_key.get(cell, 0) + row
+
+    def _count(self, key, cell, k, bins, far=slice(0), sums=0):
+        """Count (N,) points in so many bins k of cells; the last bin gets the sum of (M,) numbers of `far` points instead."""
+        cells, row = np.unique(cell, return_inverse=True)
+        counted = np.bincount(row * bins + k, minlength=len(cells) * bins).reshape(-1, bins)
+        np.add.at(counted[:, -1], row[far], sums)
+        self.join({key: dict(zip(cells.tolist(), counted))})
+
+
+class _Coverage(_TrackCounts):
+    """Counts by pass, cell and depth below the trajectory; the last two are those of points beyond all bins, and the sum of their depths (0.1 mm).
+
+    about : m, first estimate of the height of the trajectory above the road
     """
 
     def __init__(self, frame: RoadFrame, about: float):
+        super().__init__()
         self.frame, self._about = frame, float(to_units(np.array([about]))[0])
         self._ends = {p.number: (to_units(np.array(p.span)) >> READING.coverage_cell_bits).tolist() for p in frame.passes}
-        # the last two columns are for points beyond all bins: their number, and the sum of their depths in units of 0.1 mm
-        self._counts: dict[int, np.ndarray] = {}
 
     def add(self, number: int, s: np.ndarray, drops: np.ndarray) -> None:
         """Count points of a pass: (N,) int32 stations and depths below the trajectory, units of 0.1 mm."""
-        first, last = self._ends[number]
-        cell = np.clip((s >> READING.coverage_cell_bits) - first, 0, last - first)
-        low, bins = int(cell.min()), READING.coverage_bins
-        cell -= low
+        bins = READING.coverage_bins
         k = np.floor((drops - self._about) * (COORDINATE_SCALE / READING.coverage_step)).astype(np.int64) + bins // 2
         far = (k < 0) | (k >= bins)
-        k[far] = bins
-        rows = int(cell.max()) + 1
-        counted = np.bincount(cell * (bins + 2) + k, minlength=rows * (bins + 2)).reshape(rows, bins + 2)
-        np.add.at(counted[:, -1], cell[far], drops[far])
-        self._of(number)[low:low + rows] += counted
+        self._count(number, np.clip(s >> READING.coverage_cell_bits, *self._ends[number]), np.where(far, bins, k), bins + 2, far, drops[far])
 
     def _of(self, number):
-        if number not in self._counts:
-            first, last = self._ends[number]
-            self._counts[number] = np.zeros((last - first + 1, READING.coverage_bins + 2), np.int64)
-        return self._counts[number]
-
-    def counted(self) -> list[CountedCells]:
-        """The counts, to be sent elsewhere."""
-        cells = {number: np.flatnonzero(counts.any(axis=1)) for number, counts in self._counts.items()}
-        return [(number, int(rows[0]), self._counts[number][rows[0]:rows[-1] + 1].copy()) for number, rows in cells.items() if len(rows)]
-
-    def join(self, others: Iterable[CountedCells]) -> None:
-        """Add the counts of other points."""
-        for number, first, counts in others:
-            self._of(number)[first:first + len(counts)] += counts
+        """(C, bins + 2) counts of all cells of a pass."""
+        first, last = self._ends[number]
+        counts = np.zeros((last - first + 1, READING.coverage_bins + 2), np.int64)
+        for cell, row in self.counts.get(number, {}).items():
+            counts[cell - first] = row
+        return counts
 
     def warnings(self) -> tuple[str, str]:
         """What to tell of stretches that were driven and show a road at another height, and of those that show none; "" for nothing."""
@@ -505,47 +512,35 @@ class _Coverage:
         return np.where(counts[:, :-1].sum(axis=1) > READING.min_track_points, level, np.nan)
 
 
-class _Brightness:
-    """Counts of the brightness of the road under the vehicle by file, pass and cell of station, whatever the order of adding."""
+class _Brightness(_TrackCounts):
+    """Counts by pass and file, cell and brightness of the road."""
 
-    def __init__(self) -> None:
-        self.file = 0   # number of the file that points are added from
-        self.counts: dict[tuple[int, int], dict[int, np.ndarray]] = {}   # {(pass, file): {cell: counts by step of brightness}}
-
-    def add(self, number: int, s: np.ndarray, intensity: np.ndarray) -> None:
-        """Count points of a pass: (N,) int32 stations, units of 0.1 mm, and intensities."""
-        cells, cell = np.unique(s >> READING.brightness_cell_bits, return_inverse=True)
-        bins = 16 * READING.brightness_steps
+    def add(self, number: int, file: int, s: np.ndarray, intensity: np.ndarray) -> None:
+        """Count points of a pass and a file: (N,) int32 stations, units of 0.1 mm, and intensities."""
         k = (np.log2(np.maximum(intensity, 1)) * READING.brightness_steps).astype(int)
-        rows = np.bincount(cell * bins + k, minlength=len(cells) * bins).reshape(-1, bins)
-        self.join({(number, self.file): dict(zip(cells.tolist(), rows))})
-
-    def join(self, counts: dict[tuple[int, int], dict[int, np.ndarray]]) -> None:
-        """Add the counts of other points."""
-        for key, rows in counts.items():
-            of_key = self.counts.setdefault(key, {})
-            for cell, row in rows.items():
-                of_key[cell] = of_key.get(cell, 0) + row
+        self._count((number, file), s >> READING.brightness_cell_bits, k, 16 * READING.brightness_steps)
 
     def warning(self, files: Sequence[CloudHeader]) -> str:
         """What to tell of files along one drive of which one goes on where the other ends, the same road with another brightness; "" for nothing."""
         steps: dict[tuple[int, int], list[float]] = {}
-        for number in {number for number, _ in self.counts}:
-            levels = {file: self._levels(rows) for (one, file), rows in self.counts.items() if one == number}
-            for before, after in combinations(sorted(levels), 2):
-                here, there = levels[before], levels[after]
-                # those that measure together, as two scanners, may differ
-                if 2 * len(here.keys() & there.keys()) <= min(len(here), len(there)):
-                    steps.setdefault((before, after), []).extend(
-                        there[cell + by] - here[cell] for cell in here for by in (-1, 0, 1) if cell + by in there)
-        steps = {pair: values for pair, values in steps.items() if values and np.ptp(values) < READING.least_brightness_step}
-        (before, after), octaves = max(((pair, float(np.median(values))) for pair, values in steps.items()), key=lambda step: abs(step[1]),
-                                       default=((0, 0), 0.0))
+        for pair, octaves in self._seams():
+            steps.setdefault(pair, []).extend(octaves)
+        usual = {pair: float(np.median(octaves)) for pair, octaves in steps.items() if octaves and np.ptp(octaves) < READING.least_brightness_step}
+        pair, octaves = max(usual.items(), key=lambda step: abs(step[1]), default=((0, 0), 0.0))
         if abs(octaves) < READING.least_brightness_step:
             return ""
-        dark, bright = (before, after) if octaves > 0 else (after, before)
-        return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {files[bright].path} than in {files[dark].path}, though one goes on "
-                "from the other. Paint may be missed in either: export both with one scale of intensities.")
+        dark, bright = (files[number].path for number in pair[::int(np.sign(octaves))])
+        return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {bright} than in {dark}, though one goes on from the other. Paint may "
+                "be missed in either: export both with one scale of intensities.")
+
+    def _seams(self):
+        """Yield pairs of files along a pass, and the octaves by which the second is brighter in cells that both have or that touch."""
+        levels = {key: self._levels(rows) for key, rows in self.counts.items()}
+        for (number, before), (other, after) in combinations(sorted(levels), 2):
+            here, there = levels[number, before], levels[other, after]
+            # those that measure together, as two scanners, may differ
+            if number == other and 2 * len(here.keys() & there.keys()) <= min(len(here), len(there)):
+                yield (before, after), [there[cell + by] - here[cell] for cell in here for by in (-1, 0, 1) if cell + by in there]
 
     def _levels(self, rows):
         """{cell: octaves of the median brightness} of cells that have enough points."""
@@ -621,8 +616,8 @@ class _PartOfFiles:
     index: StoreIndex
     summary: _BlockSummary
     drops: dict[int, np.ndarray]   # {pass number: counts of its HeightHistogram}
-    coverage: list[CountedCells]   # of its _Coverage
-    brightness: dict[tuple[int, int], dict[int, np.ndarray]]   # counts of its _Brightness
+    coverage: CountsByCell   # coverage, brightness: of its _Coverage and _Brightness
+    brightness: CountsByCell
     times: np.ndarray   # times, places: (N,) s and (N, 3) units of 0.1 mm of the sampled points
     places: np.ndarray
 
@@ -642,12 +637,10 @@ class _PartsOfFiles:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes read the same."""
-        store = self.store
+        reader = Recipe("core.survey.blocks:_BlockReader", dict(frame=self.reader.frame, choice=self.reader.choice, slots=self.reader.slots))
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
-        return Recipe("core.survey.blocks:_parts_of_files", dict(
-            files=files, frame=self.reader.frame, columns=[list(column) for column in store.dtype.descr], section_length=store.section_length,
-            folder=str(store.folder), choice=self.reader.choice, slots=self.reader.slots, drop=self.drop,
-            ranges=self.ranges, block=self.block))
+        return Recipe("core.survey.blocks:_PartsOfFiles", dict(
+            files=files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block))
 
     def items(self, points: int) -> list[tuple[int, int]]:
         """(first, last + 1) numbers of blocks that have about so many points together."""
@@ -664,38 +657,30 @@ class _PartsOfFiles:
         return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
 
 
-def _parts_of_files(columns: list[list[str]], section_length: float, folder: str, frame: RoadFrame, choice: PointChoice, slots: TimeSlots,
-                    drop: float, **others: Any) -> _PartsOfFiles:
-    """What `_PartsOfFiles.recipe` describes."""
-    store = SectionStore([tuple(column) for column in columns], section_length, Path(folder))
-    reader = _BlockReader(frame, choice, slots)
-    return _PartsOfFiles(store=store, reader=reader, drop=drop, **others)
-
-
 def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
     """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
     chosen, summary = source.reader.chosen(source.drop), _BlockSummary()
     with source.store.part() as store:
         for number, first, count in source.ranges[item[0]:item[1]].tolist():
-            chosen.brightness.file = number
+            chosen.file = number
             for points in source.clouds.points(source.files[number], first, count, source.block):
                 check_cancelled()
                 for part in source.reader.read(points, summary, source.ground, chosen, store):
                     store.add(part)
     index = store.index()
     sampled = list(zip(*chosen.sampled)) or [[np.empty(0)], [np.empty((0, 3), np.int32)]]
-    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counted(), chosen.brightness.counts,
+    return _PartOfFiles(index, summary, chosen.histogram.counts, chosen.coverage.counts, chosen.brightness.counts,
                         *(np.concatenate(column) for column in sampled))
 
 
 def _join_parts(parts: list[_PartOfFiles]) -> _PartOfFiles:
     """One part of several that follow each other."""
-    summary, brightness = _BlockSummary(), _Brightness()
+    summary, coverage, brightness = _BlockSummary(), _TrackCounts(), _TrackCounts()
     drops: dict[int, np.ndarray] = {}
     for part in parts:
         summary.join(part.summary)
+        coverage.join(part.coverage)
         brightness.join(part.brightness)
         drops = {number: counts + drops.get(number, 0) for number, counts in part.drops.items()}
-    coverage = [cells for part in parts for cells in part.coverage]
-    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage, brightness.counts,
+    return _PartOfFiles(StoreIndex.join([part.index for part in parts]), summary, drops, coverage.counts, brightness.counts,
                         *(np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places")))

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import ordered_map
 from ..common.progress import Progress, RememberedMessages
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import THREADS, Executor, digest
@@ -28,6 +27,7 @@ from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .own_track import check_own_track
 from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
@@ -38,11 +38,11 @@ from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_traj
 from .weights import FRAME, READING, STORE, VEHICLE
 
 
-def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
                 progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
     """Read a survey, or take what an earlier run read from the work folder.
 
-    paths : LAS, LAZ or COPC files in any order
+    paths : LAS, LAZ or COPC files in any order, or their headers
     trajectory, settings, progress : as in `read_survey`
     execution : who runs the phases that read from the survey, and the work folder
 
@@ -183,7 +183,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
-    _put_in_order(survey, shared, progress.part(parts_at, read_at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.executor = shared.ordering
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory
@@ -210,13 +213,6 @@ def _survey_of(files, frame, read, settings, crs, progress):
                   frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
 
 
-def _put_in_order(survey, shared, progress):
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.executor = shared.ordering
-        survey.put_in_order(shared.ordered, shared.ordering, progress)
-
-
 def _say_brightness(survey, intensity, settings, samples, progress):
     if intensity.field == "rgb":
         progress.info("The brightness of the points' colours is taken as their intensity.")
@@ -229,7 +225,7 @@ def _lay_scanners_and_passes(survey, again, feet, progress):
     left = 0.0
     if survey.has_time and not feet:   # a scanner that rides three times too high sees three times too far
         read_at = READING.read_progress if again else 1.0
-        left = max(_check_clock(survey, progress), lay_scanners(survey, progress.part(read_at, read_at)))
+        left = max(check_own_track(survey, progress), lay_scanners(survey, progress.part(read_at, read_at)))
     if again:
         adjust_passes(survey, progress.part(READING.read_progress, 1.0))
     return left
@@ -472,49 +468,3 @@ def _no_overlap(files, frame, read, corridor):
                 f"{_said_of_times(frame)}. Set the trajectory's time system, or check that both belong to one survey.")
     return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that cloud and trajectory belong to one survey and "
             "use one CRS.")
-
-
-# Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it.
-
-
-def _check_clock(survey: Survey, progress: Progress = Progress()) -> float:
-    """Warn if points were measured at times at which the vehicle was elsewhere; m along the road that they fit worst by in any pass, else 0."""
-    number, ahead, speed = _look_ahead(survey)
-    off = {}
-    for one in np.unique(number).astype(int).tolist():
-        metres = ahead[number == one]
-        if len(metres) >= READING.min_clock_points and np.percentile(np.abs(metres), READING.nearest_percentile) >= READING.max_look_ahead:
-            off[one] = float(np.median(metres))
-    if not off:
-        return 0.0
-    worst = max(off, key=lambda one: abs(off[one]))
-    distance, fast = off[worst], float(np.median(speed[number == worst]))
-    seconds = f", about {abs(distance) / fast:.1f} s at its speed" if fast > 1.0 else ""
-    drives = "" if len(off) == len(survey.frame.passes) else f" of {len(off)} of {len(survey.frame.passes)} passes"
-    progress.warn(f"The times of the points{drives} do not seem to fit the trajectory: the road on the vehicle's own way was scanned "
-                  f"{abs(distance):.0f} m {'before' if distance > 0 else 'past'} that place{seconds}. Check that both are of one drive and count "
-                  "time alike.")
-    return abs(distance)
-
-
-def _look_ahead(survey):
-    """Of sampled points on the own track: number of the pass, metres ahead of the vehicle when measured, and its speed then (m/s)."""
-    keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
-    sampled = [keys[k] for k in np.unique(np.linspace(0, len(keys) - 1, READING.clock_sections).astype(int))] if keys else []
-    # most of the time goes into putting the points of these sections in order
-    return np.concatenate([np.empty((3, 0)), *ordered_map(lambda key: _look_ahead_in_section(survey, key), sampled)], axis=1)
-
-
-def _look_ahead_in_section(survey, key):
-    """The same of one section, (3, N)."""
-    points, parts = survey.section(*key), [np.empty((3, 0))]
-    if len(points) > READING.clock_points_per_section:
-        points = points[np.unique(np.linspace(0, len(points) - 1, READING.clock_points_per_section).astype(int))]
-    s, d, time, owner = points.s, points.d, points.time, points.pass_number
-    for number in np.unique(owner).tolist():
-        p = survey.frame.passes[number]
-        on_track = np.abs(d - p.at_station(s)[0]) < READING.clock_track_half_width
-        rows = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
-        now, soon = (p.station_at(time[rows] + wait) for wait in (0.0, 0.5))
-        parts.append(np.stack([np.full(len(rows), number), p.direction * (s[rows] - now), 2.0 * np.abs(soon - now)]))
-    return np.concatenate(parts, axis=1)

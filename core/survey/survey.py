@@ -148,8 +148,8 @@ class _UnorderedPoints:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points."""
-        store = Recipe("core.survey.store.section_store:opened_store", dict(folder=str(self.store.folder), **self.store.contents()))
-        return Recipe("core.survey.survey:_UnorderedPoints", dict(store=store, finishing=self.finishing, folder=str(self.folder), moves=self.moves))
+        return Recipe("core.survey.survey:_UnorderedPoints", dict(
+            store=self.store.recipe(folder), finishing=self.finishing, folder=str(self.folder), moves=self.moves))
 
     def moved_to(self, stretch: Stretch) -> SectionStore:
         """A store of the points that may lie in a stretch once they are moved."""

@@ -231,6 +231,7 @@ class READING:
     brightness_steps: int = 4   # in steps of an octave, so many
     least_brightness_step: float = 0.68   # octaves, a factor of 1.6, by which two files' asphalt differs: tyres and patches differ by less
     track_cell_bits: int = 8   # of a station in units of 0.1 mm: a track is looked up every 26 mm
+    least_road_share: float = 0.2   # of the points on the track lie on the road, though a ceiling is above, and fewer are strays below it
     height_peak_reach: float = 0.5   # m either side of the peak that belong to the road
     max_waiting_points: int = 4_000_000   # points held back at most until the height of the road is known
     height_samples: int = 5_000   # points on the own track from which the rough height is estimated
@@ -249,6 +250,11 @@ class READING:
     clock_sections: int = 20   # sections sampled, evenly over the survey
     clock_points_per_section: int = 5000   # points of each of them
     min_clock_points: int = 500   # sampled points that a judgement needs
+    rail_cell: float = 0.05   # m across the own track, of which heights are compared
+    least_rail_points: int = 5   # points of such a cell, of which it needs more
+    least_rail_height: float = 0.08   # m above what lies between: rails stand 0.13 to 0.17 m high on their sleepers
+    widest_rail: float = 0.21   # m, with sleepers' plates: curbs and kerbed tracks are wider
+    gauges: tuple[float, float] = 0.95, 1.80   # m from rail to rail
     max_correction: float = 10.0   # m: no pass is moved farther when passes are adjusted
 
 

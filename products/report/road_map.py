@@ -55,11 +55,10 @@ def _totals(measure, *columns):
 
 def _totals_with_sigma(length, sigma, *columns):
     """`_totals` of (N,) lengths in the user's words, each with the RMS of (N,) sigmas over its length in mm, a dash where none is known."""
-    finite = np.isfinite(sigma)
-    squares = {tuple(key): value for *key, value in _totals((length * sigma**2)[finite], *(np.asarray(column, object)[finite] for column in columns))}
-    lengths = {tuple(key): value for *key, value in _totals(length[finite], *(np.asarray(column, object)[finite] for column in columns))}
-    return [(*map(word, key), total, 1000.0 * float(np.sqrt(squares[tuple(key)] / lengths[tuple(key)])) if lengths.get(tuple(key)) else "–")
-            for *key, total in _totals(length, *columns)]
+    known = np.isfinite(sigma)
+    totals = (_totals(values, *columns) for values in (length, np.where(known, length, 0.0), np.where(known, length * sigma**2, 0.0)))
+    return [(*map(word, key), total, 1000.0 * float(np.sqrt(square / of_known)) if of_known else "–")
+            for (*key, total), (*_, of_known), (*_, square) in zip(*totals)]
 
 
 def _agreement(edges, differences):

@@ -33,8 +33,8 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="0.3" type="QString" name="size"/>
-            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="0.5" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.5,1,1.6" type="QString" name="size_map_unit_scale"/>
             <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
@@ -72,8 +72,8 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="0.3" type="QString" name="size"/>
-            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="0.5" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.5,1,1.6" type="QString" name="size_map_unit_scale"/>
             <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
@@ -111,8 +111,8 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="0.3" type="QString" name="size"/>
-            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="0.5" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.5,1,1.6" type="QString" name="size_map_unit_scale"/>
             <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>
@@ -150,8 +150,8 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="outline_width_map_unit_scale"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>
             <Option value="diameter" type="QString" name="scale_method"/>
-            <Option value="0.3" type="QString" name="size"/>
-            <Option value="3x:0,0,1,0.3,1,1.4" type="QString" name="size_map_unit_scale"/>
+            <Option value="0.5" type="QString" name="size"/>
+            <Option value="3x:0,0,1,0.5,1,1.6" type="QString" name="size_map_unit_scale"/>
             <Option value="RenderMetersInMapUnits" type="QString" name="size_unit"/>
             <Option value="1" type="QString" name="vertical_anchor_point"/>
           </Option>

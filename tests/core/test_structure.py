@@ -36,7 +36,7 @@ NUMBERS = {
     "products/inventory": 147,
     "products/surface": 20,
     "products/cloud": 0,
-    "products/export": 150,
+    "products/export": 149,
     "products/client_fields": 0,
     "products/assess": 18,
     "products/overlay": 77,

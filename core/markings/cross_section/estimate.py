@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
@@ -22,7 +23,6 @@ from .sequence import (
     beside_of,
     best_sections,
     best_sequence,
-    best_through,
     lane_places,
     lane_strips,
     misnamed_costs,
@@ -30,6 +30,7 @@ from .sequence import (
     separated_kinds,
     strip_costs,
     transitions,
+    ways,
 )
 from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading
 
@@ -81,53 +82,73 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
         with traffic on the right
     lane_width : m, the usual one
     """
-    stretches, pieces = [_stretches(candidates) for candidates, _, _ in roads], []
-    for (candidates, evidence, first_direction), of_road in zip(roads, stretches):
-        for part in of_road:
-            piece = candidates.take(part)
+    pieces, counts = [], []
+    for candidates, evidence, first_direction in roads:
+        stretches, (lined, left) = _stretches(candidates), _remembered(candidates, evidence, weights)
+        counts.append(len(stretches))
+        for part in stretches:
+            first, last = np.searchsorted(lined, [part.start, part.stop]).tolist()
+            # from the last interval of which something is known it leads to the first such one beyond the stretch
+            known = lined[first:last + (last > first)]
+            end = max(part.stop, *(known[-1:] + 1).tolist(), 0)
+            piece = candidates.take(slice(part.start, end))
             # which rows of a table they are does not matter
-            pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, part.stop), first_direction))
+            pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, end), first_direction, part.stop - part.start,
+                           known - part.start, left[:, first:first + max(len(known) - 1, 0)]))
     phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
     chosen = executor.run(phase, pieces, progress)
-    for road, of_road in zip(roads, stretches):
+    for road, count in zip(roads, counts):
         check_cancelled()
-        yield _estimate_of_road(*road, Sections.joined([next(chosen) for _ in of_road]), lane_width, weights)
+        yield _estimate_of_road(*road, list(islice(chosen, count)), lane_width, weights)
 
 
-def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int], lane_width: float, weights: EstimateWeights) -> Sections:
-    """The phase that chooses the cheapest cross-sections of the intervals of a stretch; what it is given is as of `estimates_of_roads`."""
-    candidates, evidence, first_direction = item
+def _remembered(candidates, evidence, weights):
+    """(N,) int, intervals of which something is known, and (2, N - 1) what of lanes, and of directions, is left at the next one, 0 to 1."""
+    # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
+    paint = candidates.painted
+    shown, lined = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1), np.flatnonzero(paint.any(1) | evidence.bare)
+    hidden, unseen = np.r_[0.0, np.cumsum(candidates.length)], candidates.length * (1 - shown)
+    gap = hidden[lined[1:]] - hidden[lined[:-1] + 1] + (unseen[lined[1:]] + unseen[lined[:-1]]) / 2
+    return lined, np.stack([np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)])
+
+
+def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int, int, np.ndarray, np.ndarray], lane_width: float,
+                        weights: EstimateWeights) -> tuple[Sections, np.ndarray, np.ndarray]:
+    """The phase that chooses the cheapest cross-sections of the intervals of a stretch, and those beyond it up to the next that it leads to.
+
+    item : what is known of the intervals, as of `estimates_of_roads`, how many of them are its own, and `known` and `left` as of `transitions`
+
+    Returns the Sections of its own intervals, (I, K) nats of what named their lines, and `transitions`
+    """
+    candidates, evidence, first_direction, count, known, left = item
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
     sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
-    return sections
+    return (sections.take(slice(count)), misnamed_costs(candidates, sections, weights)[:count],
+            transitions(candidates, sections, known, lane_width, left, weights))
 
 
-def _estimate_of_road(candidates, evidence, first_direction, sections, lane_width, weights):
-    """The RoadEstimate of the most probable sequence of cross-sections of one road; what it is given is as of `estimates_of_roads`."""
-    sections = replace(sections, cost=sections.cost.copy())
+def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, weights):
+    """The RoadEstimate of the most probable sequence of cross-sections of one road, of whose stretches `sections_of_stretch` gave the parts."""
+    of_stretches, misnamed, of_gaps = zip(*parts)
+    sections, transition = Sections.joined(of_stretches), np.concatenate(of_gaps)
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
-    # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
-    paint = candidates.painted
-    shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
+    lined = np.flatnonzero(candidates.painted.any(1) | evidence.bare)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
-    lined, total, unnamed_total = np.flatnonzero(paint.any(1) | evidence.bare), 0.0, 0.0
-    # what named the lines is the same evidence
-    cost = sections.cost - np.concatenate([misnamed_costs(candidates.take(part), sections.take(part), weights) for part in _stretches(candidates)])
-    once, second = np.full((2, *cost.shape), np.inf)
+    once, second = np.full((2, *sections.cost.shape), np.inf)
+    total = unnamed_total = 0.0
     if len(lined):
-        hidden = np.r_[0.0, np.cumsum(candidates.length)]
-        unseen = candidates.length * (1 - shown)
-        gap = hidden[lined[1:]] - hidden[lined[:-1] + 1] + (unseen[lined[1:]] + unseen[lined[:-1]]) / 2
-        left = [np.exp(-gap / remembered) for remembered in (weights.lanes_remembered, weights.directions_remembered)]
-        transition = transitions(candidates, sections, lined, lane_width, left, weights)
-        choice[lined], total = best_sequence(sections.cost[lined], transition)
-        posterior[lined] = probabilities(sections.cost[lined], transition)
-        unnamed_total = best_sequence(cost[lined], transition)[1]
-        second[lined] = behind_best(cost[lined], transition, candidates.length[lined], weights.repeats)
+        # what named the lines is the same evidence
+        cost = sections.cost - np.concatenate(misnamed)
         # what is laid out alike along the road was seen once
-        seen_once = cost[lined] * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
-        sureness[lined], once[lined] = probabilities(seen_once, transition), best_through(seen_once, transition)
+        seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
+        costs = np.stack([sections.cost, cost, seen_once])[:, lined]
+        least = ways(costs, transition, np.min)
+        choice[lined], total = best_sequence(least[0, 0], transition)
+        _, unnamed_total = unnamed_best = best_sequence(least[0, 1], transition)
+        second[lined] = behind_best(costs[1], transition, least[:, 1], unnamed_best, candidates.length[lined], weights.repeats)
+        posterior[lined], sureness[lined] = probabilities(costs[::2], transition)
+        once[lined] = least[:, 2].sum(axis=0)
     return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
                         second)
 

@@ -6,11 +6,11 @@ the best sequence of them along the road.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp, softmax
+from scipy.special import softmax
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
@@ -463,13 +463,13 @@ PLACE = 0.5   # derived: m across at which cross-sections are compared
 INTERVALS_AT_ONCE = 32   # derived: of which cross-sections are compared with each other
 
 
-def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
+def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: np.ndarray,
                 weights: EstimateWeights) -> np.ndarray:
     """(N - 1, K, K) nats of going from each cross-section of an interval to each of the next of those of which something is known.
 
     known : (N,) int, intervals, ascending, of the candidates and sections of all intervals
     lane_width : m, usual
-    left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
+    left : (2, N - 1) of what was known of lanes, and of directions, what is left after the way to the next one, 0 to 1
     """
     kept = sections.cost.shape[1]
     result = np.empty((max(len(known) - 1, 0), kept, kept))
@@ -553,50 +553,55 @@ def _core(values):
     return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
 
 
-def _ways(cost, transition, joined):
-    """(2, I, K) nats of the ways up to each cross-section and with it, and on from it; `joined` makes one of several, given them and an axis."""
-    forward, backward = ways = np.stack([cost, np.zeros(cost.shape)])
-    for i in range(1, len(cost)):
-        forward[i] += joined(forward[i - 1][:, None] + transition[i - 1], 0)
-    for i in range(len(cost) - 1, 0, -1):
-        backward[i - 1] = joined(transition[i - 1] + (cost[i] + backward[i])[None, :], 1)
-    return ways
+def ways(cost: np.ndarray, transition: np.ndarray, joined: Callable[..., np.ndarray]) -> np.ndarray:
+    """(2, ..., I, K) nats of the ways up to each cross-section and with it, and on from it.
 
-
-def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
-    """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole.
-
-    `cost` : (I, K) nats, inf where there is no cross-section; `transition` : (I - 1, K, K) nats.
+    cost : (..., I, K) nats, inf where there is no cross-section; transition : (I - 1, K, K) nats
+    joined : makes one of several ways, given them and an axis: np.min the most probable one
     """
-    forward, _ = _ways(cost, transition, np.min)
-    choice = np.full(len(cost), np.argmin(forward[-1]))
-    for i in range(len(cost) - 1, 0, -1):
+    forward, backward = both = np.stack([cost, np.zeros(cost.shape)])
+    for i in range(1, cost.shape[-2]):
+        forward[..., i, :] += joined(forward[..., i - 1, :, None] + transition[i - 1], -2)
+    for i in range(cost.shape[-2] - 1, 0, -1):
+        backward[..., i - 1, :] = joined(transition[i - 1] + (cost[..., i, :] + backward[..., i, :])[..., None, :], -1)
+    return both
+
+
+def _sum_of(nats, axis):
+    """Nats of all of several ways together."""
+    least = nats.min(axis, keepdims=True)
+    least[~np.isfinite(least)] = 0.0
+    with np.errstate(divide="ignore"):
+        return least.squeeze(axis) - np.log(np.exp(least - nats).sum(axis))
+
+
+def best_sequence(forward: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float]:
+    """The most probable sequence (Viterbi): the (I,) cross-section of each interval, and nats of the whole; `forward` : the first of `ways`."""
+    choice = np.full(len(forward), np.argmin(forward[-1]))
+    for i in range(len(forward) - 1, 0, -1):
         choice[i - 1] = np.argmin(forward[i - 1] + transition[i - 1][:, choice[i]])
     return choice, float(forward[-1].min())
 
 
 def probabilities(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
-    """(I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `best_sequence`."""
-    return softmax(-_ways(cost, transition, lambda nats, axis: -logsumexp(-nats, axis)).sum(axis=0), axis=1)
+    """(..., I, K) how probable each cross-section is among all sequences (forward-backward); parameters as of `ways`."""
+    return softmax(-ways(cost, transition, _sum_of).sum(axis=0), axis=-1)
 
 
-def best_through(cost: np.ndarray, transition: np.ndarray) -> np.ndarray:
-    """(I, K) nats of the most probable sequence through each cross-section; parameters as of `best_sequence`."""
-    return _ways(cost, transition, np.min).sum(axis=0)
-
-
-def behind_best(cost: np.ndarray, transition: np.ndarray, length: np.ndarray, repeats: float) -> np.ndarray:
+def behind_best(cost: np.ndarray, transition: np.ndarray, least: np.ndarray, best: tuple[np.ndarray, float], length: np.ndarray,
+                repeats: float) -> np.ndarray:
     """(I, K) nats by which the most probable sequence through each cross-section is behind the most probable one of all; inf where there is none.
 
     Where the two differ over a longer way than `repeats`, m, they differ in how the whole road is laid out. What is seen there again and again was
-    laid out and driven once, so it counts as on a way of that length. `length` : (I,) m of each interval; the rest as of `best_sequence`.
+    laid out and driven once, so it counts as on a way of that length.
+
+    cost, transition : as of `ways`, of which `least` are the most probable; best : as of `best_sequence`; length : (I,) m of each interval
     """
-    choice, total = best_sequence(cost, transition)
+    (choice, total), (forward, backward) = best, least
     apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
     apart[np.arange(len(choice)), choice] = 0.0
     # metres for which a sequence has been apart from the best one, up to a cross-section and from it on
     before, after = apart.copy(), apart.copy()
-    forward, backward = _ways(cost, transition, np.min)
     for i in range(1, len(cost)):
         came = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
         before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came], 0.0)

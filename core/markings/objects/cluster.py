@@ -89,12 +89,15 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
     cluster = [np.zeros(count, np.int32) for count in counts]
     number = 0
     for k, (line, (markings, outlines, _)) in enumerate(zip(lines, named)):
-        for marking, drawn in zip(markings, outlines):
+        for marking, drawn, scanned in zip(markings, outlines, _scanning_distances(paint[k], markings, line, frame)):
             number += 1
             check_cancelled()
             cluster[k][marking.rows] = number
             polygons += drawn
-            rows += [_row(marking, number, line, frame)] * len(drawn)
+            shape = marking.shape
+            rows += [dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
+                          offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation, scan_m=scanned,
+                          points=shape.points, **{"class": marking.kind})] * len(drawn)
     for road, numbers in zip(roads, cluster):
         _put(clustered.store, road, numbers, marking_points)
     refused = sum(without for _, _, without in named)
@@ -154,7 +157,7 @@ def _apart(records: Columns, labels: np.ndarray, striped: tuple[list[Stripe], np
     columns = _columns_at(records, MEASURED, order)
     shapes = [unjoined[label] if label in unjoined else measure(*(column[slice(*ends)] for column in columns))
               for label, ends in zip(labels.tolist(), bounds)]
-    return _stripe_markings(records, stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
+    return _stripe_markings(stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
 
 
 def _divided(paint, labels, records, stripes):
@@ -182,16 +185,13 @@ def _divided(paint, labels, records, stripes):
     return labels, alone + of_parts, [shape for _, (shape,) in divided[len(starts):]]
 
 
-def _stripe_markings(records, stripes, striped, shapes):
+def _stripe_markings(stripes, striped, shapes):
     """[_Marking] of stripes of crossings, with points of each and its Shape."""
-    painted = records.take(np.concatenate([np.empty(0, np.intp), *(rows for _, rows in striped)]))
-    markings, first = [], 0
+    markings = []
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        shape = replace(shape, length=length, width=width)
-        markings.append(_Marking(painted[first:first + len(rows)], rows, shape, "zebra", shapely.Polygon(corners)))
-        first += len(rows)
+        markings.append(_Marking(rows, replace(shape, length=length, width=width), "zebra", shapely.Polygon(corners)))
     return markings
 
 
@@ -260,21 +260,22 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
             check_cancelled()
             of_it = _rows_of(bounds, members)
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
-            markings.append(_Marking(records[of_it], pieces.order[of_it], shape, kind))
+            markings.append(_Marking(pieces.order[of_it], shape, kind))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    undrawn = [marking for marking in markings if marking.outline is None]
+    striped, undrawn = ([marking for marking in markings if (marking.outline is None) == wanted] for wanted in (False, True))
     outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
                                  [marking.rows for marking in undrawn], 1.0,
                                  [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
-    drawn = [next(outlines) if marking.outline is None
-             else [lifted(marking.outline, np.stack([marking.records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)] for marking in markings]
+    rows = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in striped)])
+    places = np.stack(_columns_at(pieces.paint, "xyz", rows), axis=1) * COORDINATE_SCALE
+    of_stripes = iter(np.split(places, np.cumsum([len(marking.rows) for marking in striped])))
+    drawn = [next(outlines) if marking.outline is None else [lifted(marking.outline, next(of_stripes))] for marking in markings]
     return markings, drawn, sum(kind == NOT_PAINT for members, kind in classes if members)
 
 
 class _Marking(NamedTuple):
-    """Records of a marking and their rows in the paint of its road; of a stripe of a crossing its outline in local coordinates is known already."""
+    """Rows of a marking in the paint of its road; of a stripe of a crossing its outline in local coordinates is known already."""
 
-    records: Columns
     rows: np.ndarray
     shape: Shape
     kind: str
@@ -317,25 +318,19 @@ def _by_cluster(labels, fewest):
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
-def _row(marking, number, line, frame):
-    shape = marking.shape
-    return dict(road=int(line.number), cluster=number, use="keep" if marking.kind in LINE_KINDS else "other", station_m=shape.s0,
-                offset_m=shape.offset, length_m=shape.length, width_m=shape.width, elongation=shape.elongation,
-                scan_m=_scanning_distance(marking.records, line, frame), points=shape.points, **{"class": marking.kind})
-
-
-def _scanning_distance(records, line, frame):
-    """Median distance across the road from the track that scanned the marking."""
-    numbers, along, across = (records[name] for name in ("pass_number", "s", "d"))
-    distance = np.empty(len(records))
-    for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
+def _scanning_distances(paint, markings, line, frame):
+    """Of each marking of a road the median distance across it from the track that scanned the marking."""
+    bounds = np.cumsum([0, *(len(marking.rows) for marking in markings)]).tolist()
+    records = paint.take(np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in markings)]))
+    numbers, distance = records["pass_number"], np.empty(len(records))
+    for number in np.unique(numbers).tolist():
         rows, driven = np.flatnonzero(numbers == number), frame.passes[number]
-        s, d = along[rows] * COORDINATE_SCALE, across[rows] * COORDINATE_SCALE
+        s, d = (records[name][rows] * COORDINATE_SCALE for name in "sd")
         if driven.road != line.number:
             # what another road's pass scanned lies in the frame of that road, too
             s, d = frame.road(driven.road).locate(*(records[name][rows] * COORDINATE_SCALE for name in "xy"))
         distance[rows] = np.abs(d - driven.at_station(s)[0])
-    return median(distance)
+    return [median(distance[a:b]) for a, b in zip(bounds, bounds[1:])]
 
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.

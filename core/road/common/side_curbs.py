@@ -155,28 +155,31 @@ def curbs_along(source: Any, steps_by_method: Mapping[str, Mapping[tuple[int, st
     look_at : gives the RoadLook of a road; None where nothing but the steps is known of the ground
     """
     roads = sorted({road for road, _ in next(iter(steps_by_method.values()))})
-    items = [(road, side, {method: steps[road, side] for method, steps in steps_by_method.items()}) for road in roads for side in SIDE_SIGNS]
+    methods = {method: [method] for method in steps_by_method}
+    if len(methods) > 1:
+        methods["both"] = list(methods)
+    items = [(road, side, method, {name: steps_by_method[name][road, side] for name in names})
+             for road in roads for side in SIDE_SIGNS for method, names in methods.items()]
     looks = {road: look_at(road) for road in roads} if look_at else {}
     phase = Phase(_curbs_of_side, source, (looks,), lambda item: f"the {item[1]} side of road {item[0]}")
-    parts = list(source.executor.run(phase, items))
-    methods, crs = [*steps_by_method, "both"] if len(steps_by_method) > 1 else [*steps_by_method], getattr(source, "survey", source).crs
-    return {method: CurbPoints.join([part[method] for part in parts if method in part], crs) for method in methods}
+    parts, crs = list(source.executor.run(phase, items)), getattr(source, "survey", source).crs
+    return {method: CurbPoints.join([points for item, points in zip(items, parts) if item[2] == method and points is not None], crs)
+            for method in methods}
 
 
-def _curbs_of_side(source: Any, item: tuple[int, str, Mapping[str, SideSteps]], looks: dict[int, RoadLook]) -> dict[str, CurbPoints]:
-    """The phase that follows the curb: {method: CurbPoints} on one side of a road, as of `curbs_along`.
+def _curbs_of_side(source: Any, item: tuple[int, str, str, Mapping[str, SideSteps]], looks: dict[int, RoadLook]) -> CurbPoints | None:
+    """The phase that follows the curb: CurbPoints of a method, or of "both", on one side of a road, as of `curbs_along`; None without any steps.
 
-    item : number of the road, the side, and what each method saw there
+    item : number of the road, the side, the method, and what it or each of both saw there
     """
-    (road, side, methods), survey = item, getattr(source, "survey", source)
+    road, side, method, methods = item
     beside = looks[road].side(SIDE_SIGNS[side]) if road in looks else None
-    linked = {method: (seen, seen.chains(beside)) for method, seen in methods.items() if seen.steps is not None and len(seen.steps)}
+    linked = [(seen, seen.chains(beside)) for seen in methods.values() if seen.steps is not None and len(seen.steps)]
+    if not linked:
+        return None
     # scanlines may have been told how high the scanner is
-    points = {method: points_of_side(source if method == "scanlines" else survey, road, side, [of_method], methods[method].occlusion, beside)
-              for method, of_method in linked.items()}
-    if linked and len(methods) > 1:
-        points["both"] = points_of_side(survey, road, side, list(linked.values()), methods["profiles"].occlusion, beside)
-    return points
+    return points_of_side(source if method == "scanlines" else getattr(source, "survey", source), road, side, linked,
+                          methods["profiles" if "profiles" in methods else method].occlusion, beside)
 
 
 def _points_of_line(steps, bounds, number):

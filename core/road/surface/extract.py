@@ -116,10 +116,12 @@ def _carriageway(survey, road, settings, ground, windows, profiled, stations, me
     """The Carriageway of one road, beside whose rows at (R,) stations these edges were measured."""
     cells, profiles = ground.windows(road, windows, profiled)
     prior = survey.road_height(road, stations)
-    followed = follow_road(cells, prior)
-    if followed is None:
+    if road not in ground.followed:
+        followed = follow_road(cells, prior)
+        ground.followed[road] = followed and (followed, smooth_road(followed, cells))
+    if ground.followed[road] is None:
         return None
-    height = smooth_road(followed, cells)
+    followed, height = ground.followed[road]
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
     limits, grown, closed = {}, {}, {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):

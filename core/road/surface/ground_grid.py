@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -332,6 +333,7 @@ class MeasuredGround:
         self.survey = survey
         self._file: ArrayFile | None = None
         self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
+        self.followed: dict[int, Any] = {}   # by road: the height of the road in its cells as it was followed, and smoothed; None where there is none
 
     def cells(self, road: int) -> GroundCells:
         """The GroundCells of a whole road; those of all roads are measured together."""

@@ -448,15 +448,12 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
     that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken. Passes farther apart than navigation drifts
     are two surveys, of which one may be right, so that either may be off by all that they differ.
     """
-    apart = [_apart(pair) for pair in offsets]
-    measured = [np.isfinite(values) for values in apart]
-    stations = np.concatenate([pair.stations[mask] for pair, mask in zip(offsets, measured)] or [np.empty(0)])
-    if not len(stations):
+    rows = np.concatenate([np.stack([pair.stations, _apart(pair), *np.broadcast_to([[pair.one], [pair.other]], (2, len(pair.stations)))])
+                           for pair in offsets] or [np.empty((4, 0))], axis=1)
+    rows = rows[:, np.isfinite(rows[1])]
+    if not rows.size:
         return None
-    order = np.argsort(stations, kind="stable")
-    stations, metres = stations[order], np.concatenate([values[mask] for values, mask in zip(apart, measured)])[order]
-    first_numbers, second_numbers = (np.concatenate([np.full(mask.sum(), getattr(pair, name)) for pair, mask in zip(offsets, measured)])[order]
-                                     for name in ("one", "other"))
+    stations, metres, first_numbers, second_numbers = rows[:, np.argsort(rows[0], kind="stable")]
     places = np.unique(stations)
     bounds = np.searchsorted(stations, places - REGISTER.sigma_reach), np.searchsorted(stations, places + REGISTER.sigma_reach, side="right")
     sigmas = []

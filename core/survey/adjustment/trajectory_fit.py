@@ -20,7 +20,7 @@ from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
-from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, TRACK, VEHICLE
+from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, READING, TRACK, VEHICLE
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
-    if not mountings and len(np.unique(sample.source)) <= LAS.max_scanners:   # places of one scanner at a time do not show that there are several
+    if not mountings:   # places of one scanner at a time do not show that there are several
         sample = replace(sample, scanner=sample.source)
         mountings = _near(scanner_mountings(sample, shape.trajectory))
     if mountings and _other_heights(sample, shape.trajectory, mountings, progress):
@@ -206,7 +206,7 @@ class _Mounting:
 
 @dataclass(frozen=True)
 class _Sample:
-    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner and value of point_source_id."""
+    """First returns in order of time: s, (N, 3) map coordinates, number of the scanner and point_source_id, if few."""
 
     time: np.ndarray
     place: np.ndarray
@@ -231,6 +231,7 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
     source = numbers[order, SCANNER_FIELDS.index("point_source_id")]
+    source = source if len(np.unique(source)) <= LAS.max_scanners else np.zeros(len(source), np.uint8)
     return _Sample(time[order], place[order], scanners_of(numbers, time, scanner_field)[order], source)
 
 
@@ -313,7 +314,9 @@ def _mounting_of(number, time, place):
         return None
     lever = middle + u[:, None] * across + v[:, None] * upright
     rays = place - lever[window]
-    below = rays[(np.hypot(*rays.T[:2]) < TRACK.usual_height) & good[window], 2]
+    near = rays[(np.hypot(*rays.T[:2]) < TRACK.usual_height) & good[window], 2]
+    under = near[near < -VEHICLE.lowest_sensor]
+    below = under if len(under) > READING.least_road_share * len(near) else near   # in a tunnel as much lies above
     return _Mounting(number, middles[good], lever[good], float(np.median(below)) if len(below) else np.nan, misfit)
 
 

@@ -52,11 +52,10 @@ class RowSpans:
 
     def values_of(self, row: int, first: int = 0, end: int | None = None) -> slice:
         """The values of a row at the stations from `first` to `end` (exclusive), as far as it is kept there."""
-        begin = self.first[row]
-        low = min(max(first, begin), self.end[row])
-        high = self.end[row] if end is None else max(min(end, self.end[row]), low)
-        shift = self.start[row] - begin
-        return slice(int(low + shift), int(high + shift))
+        begin, stop = self.first.item(row), self.end.item(row)
+        low = min(max(first, begin), stop)
+        shift = self.start.item(row) - begin
+        return slice(low + shift, (stop if end is None else max(min(end, stop), low)) + shift)
 
     def places(self, rows: Any, stations: Any) -> tuple[np.ndarray, np.ndarray]:
         """Which value belongs to rows and stations, which broadcast together, and whether they are kept; 0 where not."""
@@ -119,7 +118,7 @@ class RowTable:
         """The row at the stations from `first` to `end` (exclusive)."""
         missing = self.missing if np.ndim(self.missing) == 0 else self.missing[row]
         values, kept = np.full(max(end - first, 0), missing, self.values.dtype), self.spans.values_of(row, first, end)
-        begin = max(int(self.spans.first[row]) - first, 0)
+        begin = max(self.spans.first.item(row) - first, 0)
         values[begin:begin + kept.stop - kept.start] = self.values[kept]
         return values
 

@@ -180,23 +180,24 @@ def _bounds_of_points(path, units):
     return low, high
 
 
-def read_headers(paths: Iterable[str | os.PathLike[str]], warn: Callable[[str], None] = lambda note: None, given: str = "") -> list[CloudHeader]:
+def read_headers(paths: Iterable[str | os.PathLike[str] | CloudHeader], warn: Callable[[str], None] = lambda note: None,
+                 given: str = "") -> list[CloudHeader]:
     """The headers of several files, in the order given; a file that is given twice, by whatever path, is read once.
 
+    paths : of the files; a header that was read before stays as it is
     warn : is told what headers state otherwise than their files show
     given : WKT of the CRS of those that state none
 
     Raises RoadExtractionError if there is no file, a file cannot be read, or all files are empty.
     """
-    by_real_path: dict[str, str] = {}
+    unique: dict[str, Any] = {}
     for path in paths:
-        by_real_path.setdefault(os.path.realpath(path), str(Path(path)))
-    unique = list(by_real_path.values())
+        unique.setdefault(os.path.realpath(path.path if isinstance(path, CloudHeader) else path), path)
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
-    files = [read_header(path, given) for path in unique]
+    files = [path if isinstance(path, CloudHeader) else read_header(Path(path), given) for path in unique.values()]
     if not any(file.count for file in files):
-        named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
+        named = f"The file {files[0].path} holds" if len(files) == 1 else f"The files {', '.join(file.path for file in files[:3])} hold"
         raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
     for note in (note for file in files for note in file.notes):
         warn(note)

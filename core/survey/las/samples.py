@@ -155,9 +155,13 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
-    order = np.lexsort((*place.T, time))
-    repeated = (time[order[1:]] == time[order[:-1]]) & (place[order[1:]] == place[order[:-1]]).all(axis=1)
-    return np.sort(order[np.r_[True, ~repeated][:len(order)]])
+    order = np.argsort(time, kind="stable")
+    alike = time[order[1:]] == time[order[:-1]]
+    rows = order[(np.append(False, alike) | np.append(alike, False))[:len(order)]]
+    # few points are measured at one time, unless by a scanner of many beams
+    rows = rows[np.lexsort((*place[rows].T, time[rows]))]
+    repeated = (time[rows[1:]] == time[rows[:-1]]) & (place[rows[1:]] == place[rows[:-1]]).all(axis=1)
+    return np.delete(np.arange(len(time)), rows[1:][repeated])
 
 
 def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
 from .records import ROAD_POINT, Points, Seen, join_columns, point_dtype, points_of_scanners, seen_in_section
-from .section_store import SectionStore, Stretch, opened_store
+from .section_store import SectionStore, Stretch
 
 if TYPE_CHECKING:
     from ..frame.row_table import SigmaAlong
@@ -42,8 +42,8 @@ class RoadPoints:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points, which must be those of a Survey."""
-        arguments = dict(survey=self.survey.recipe(folder), has_corrected=self.has_corrected, folder=str(self.store.folder), **self.store.contents())
-        return Recipe("core.survey.store.road_points:_shared_road_points", arguments)
+        return Recipe("core.survey.store.road_points:_shared_road_points", dict(
+            survey=self.survey.recipe(folder), store=self.store.recipe(folder), has_corrected=self.has_corrected))
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
@@ -111,9 +111,9 @@ class RoadPoints:
         return Points(np.asarray(join_columns(parts, self.store.dtype)))
 
 
-def _shared_road_points(survey: Any, has_corrected: bool, **store: Any) -> RoadPoints:
+def _shared_road_points(survey: Any, **others: Any) -> RoadPoints:
     """What `RoadPoints.recipe` describes."""
-    return replace(RoadPoints.of_survey(survey), store=opened_store(**store), has_corrected=has_corrected)
+    return replace(RoadPoints.of_survey(survey), **others)
 
 
 # The points of whole roads, read from the sections of a store whenever a column is asked for.

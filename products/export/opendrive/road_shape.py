@@ -27,7 +27,6 @@ BEND_STEP = 0.25         # m between the places at which a border is held agains
 LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
 END_ROUNDS = 4
 SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
-MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
 
 
 @dataclass
@@ -329,26 +328,13 @@ def _lines_of_lane_0(sections, centres, lengths, first):
         for k in range(first + way, len(sections) if way > 0 else -1, way):
             line, before = sections[k][centres[k]], lines[k - way]
             value, start_value = float(before.at(lengths[k - way] * -before_end)), float(line.at(lengths[k] * -line_start))
-            aside = before is not sections[k - way][centres[k - way]]
-            if abs(start_value - value) <= (MOST_LEAD if aside else SAME_LINE):
+            if abs(start_value - value) <= SAME_LINE:
                 lines[k] = line
-                if aside:   # lead there
-                    ends = (float(before.at(0.0)), start_value) if way > 0 else (start_value, float(before.at(lengths[k - way])))
-                    lines[k - way] = _straight(before, *ends, lengths[k - way])
             else:
-                straight = _straight(line, value, value, lengths[k])
+                straight = Cubics(np.c_[line.rows[:, 0], np.full(len(line), value), np.zeros((len(line), 3))])
                 room = difference(straight, line) if centres[k] == 0 else difference(line, straight) if centres[k] == len(sections[k]) - 1 else None
                 lines[k] = straight if room is not None and room.least(lengths[k])[0] >= 0.0 else line
     return [lines[k] for k in range(len(sections))]
-
-
-def _straight(like, first, last, length):
-    """A straight function with the pieces of another."""
-    rows = np.zeros_like(like.rows)
-    slope = (last - first) / length
-    rows[:, 0], rows[:, 2] = like.rows[:, 0], slope
-    rows[:, 1] = first + slope * rows[:, 0]
-    return Cubics(rows)
 
 
 def _slope_at(place, course):

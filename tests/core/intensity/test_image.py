@@ -263,7 +263,7 @@ def image_of_levels(path, levels, before=None):
 
 def test_of_a_changed_image_the_changed_tiles_alone_are_written_where_its_file_is_still_there(tmp_path, monkeypatch):
     written, write = [], _NewGeoTiff.write
-    monkeypatch.setattr(_NewGeoTiff, "write", lambda self, *tile: written.append(tile[0] // 512) or write(self, *tile))
+    monkeypatch.setattr(_NewGeoTiff, "write", lambda self, *tile, **how: written.append(tile[0] // 512) or write(self, *tile, **how))
     image = image_of_levels(tmp_path / "a.tif", [1.0, 2.0, 3.0, None])
     assert written == [0, 1, 2]
     for name, levels, changed in (("b.tif", [1.0, 5.0, None, 4.0], {1, 2, 3}), ("b.tif", [1.0, 5.0, None, 6.0], {3})):

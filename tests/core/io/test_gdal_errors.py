@@ -44,8 +44,7 @@ def test_images_are_written_and_read_and_gdal_stays_as_it_was(tmp_path, state):
     path = tmp_path / "image.tif"
     with new_geotiff(path, 30, 20, (0.0, 1.0, 0.0, 20.0, 0.0, -1.0), "") as image:
         assert states() == state
-        image.write(3, 2, np.full((4, 5), 7.0, np.float32))
-        image.flush()
+        image.write(3, 2, np.full((4, 5), 7.0, np.float32), whole=True)
         assert (image.read(3, 2, 5, 4) == 7).all()
     assert states() == state
     assert (IntensityImage.open(path).read_pixels(3, 2, 5, 4) == 7).all()

@@ -29,8 +29,7 @@ def test_two_runs_that_write_one_file_at_once_both_end_well_and_the_last_to_end_
     half = SIDE // 2
     for rows in (0, half):   # in turns
         for value, image in enumerate(images):
-            image.write(0, rows, np.full((half, SIDE), 10.0 + value, np.float32))
-            image.flush()
+            image.write(0, rows, np.full((half, SIDE), 10.0 + value, np.float32), whole=True)
     for number in (first_to_end, 1 - first_to_end):
         runs[number].__exit__(None, None, None)
         np.testing.assert_array_equal(pixels(path), 10.0 + number)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.open_survey import open_survey
+from scipy.spatial import cKDTree
 
 
 class Heard(Progress):
@@ -97,3 +98,23 @@ def test_a_file_without_times_among_others_is_named(street, tmp_path):
     timeless.write(tmp_path / "timeless.laz")
     warned, _ = told([first, tmp_path / "timeless.laz"], trajectory)
     assert any("1 of 2 files" in text and "timeless.laz" in text and "gps_time" in text for text in warned)
+
+
+def test_a_drive_on_rails_is_no_road(street, tmp_path):
+    """A street with ridges either side of the vehicle's own way, as high as rails are."""
+    cloud, trajectory = street
+    nearest = cKDTree(np.c_[trajectory.x, trajectory.y]).query(np.c_[cloud.x, cloud.y])[1]
+    yaw = np.radians(90.0 - trajectory.heading[nearest])
+    aside = (cloud.y - trajectory.y[nearest]) * np.cos(yaw) - (cloud.x - trajectory.x[nearest]) * np.sin(yaw)
+    on_rails = np.abs(np.abs(aside) - 0.75) < 0.05
+    path = part_of(cloud, tmp_path, "rails", slice(None), Z=lambda units: np.where(on_rails, units + 150, units))
+    warned, sigma = told([path], trajectory)
+    assert len(warned) == 1 and "rails, 1.5" in warned[0] and "no road" in warned[0]
+    assert sigma > 1.0
+
+
+def test_a_scanner_without_intensities_beside_another_is_named(street, tmp_path):
+    cloud, trajectory = street
+    second = cloud.point_source_id == cloud.point_source_id.max()
+    warned, _ = told([part_of(cloud, tmp_path, "dark", slice(None), intensity=lambda counts: np.where(second, 0, counts))], trajectory)
+    assert len(warned) == 1 and "Scanner 2 of 2 gives one intensity" in warned[0]

@@ -125,6 +125,15 @@ def test_a_step_between_the_files_of_one_drive_is_told_and_leaves_the_street_as_
     assert found.sigma == pytest.approx(np.linalg.norm(metres) if told_of else 0.0, abs=0.15)
 
 
+def test_the_ceiling_of_a_tunnel_is_no_road(tmp_path):
+    """It is nearer to the scanners than the road, and more points lie on it."""
+    measured = mirror_drive(PAIR, seconds=5.0, corners=[(-5.0, 0.0), (5.0, 0.0), (5.0, 4.6), (-5.0, 4.6), (-5.0, 0.0)])
+    heard = Heard()
+    survey = open_survey([measured.write(tmp_path / "tunnel.laz")], measured.trajectory(), progress=heard)
+    survey.store.close()
+    assert survey.sensor_height[0] == pytest.approx(2.5, abs=0.1) and not heard.warned
+
+
 def test_scanners_of_which_places_show_one_at_a_time_are_two(tmp_path):
     """Programs that write the points of one scanner after those of the other."""
     measured = mirror_drive(PAIR, seconds=20.0)
