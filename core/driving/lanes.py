@@ -210,7 +210,7 @@ def _where_driven(part, s, estimate, span, lane_width, lined):
     drives, ahead = _drives(part.stations, s, estimate, passes), evidence.directions[passes] == span.direction
     beside = drives[ahead] - part.d
     inside = np.abs(beside) < part.width / 2
-    if span.count == 2 and not inside.any():
+    if lined and span.count == 2 and not inside.any():
         beside = part.d + (1 - 2 * span.place) * part.width - drives
         inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)

@@ -316,7 +316,6 @@ class SECTIONS:
     closed_island: float = 1.0   # m between the ends of a line round an island that closes
     min_boundary_spacing: float = 0.8   # m: lines nearer than this are one boundary, a lane ends at the nearer one
     max_line_jump: float = 0.3   # m across by which a line may jump where it goes on as another
-    parting: float = 0.1   # m by which a line must leave one neighbour more than the other to run along that one
     max_dash_gap: float = 9.5   # m that a dashed line may be silent at its ends before it is known to end
 
 

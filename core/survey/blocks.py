@@ -373,15 +373,9 @@ class HeightHistogram:
 
     def add(self, number: int, drops: np.ndarray) -> None:
         """Count points on the track of a pass; (N,) int32 depths below the trajectory in units of 0.1 mm."""
-        size = int(2 * READING.height_range / READING.height_resolution)
-        k = drops - np.int32(round(self.origin / COORDINATE_SCALE) - _RESOLUTION_UNITS // 2)
-        k //= _RESOLUTION_UNITS
-        if k.min() < 0 or k.max() >= size:
-            k = k[(k >= 0) & (k < size)]
-        least = int(k.min(initial=size))
-        k -= least
-        counted = np.bincount(k)
-        self.counts[number][least:least + len(counted)] += counted
+        k = (drops - np.int32(round(self.origin / COORDINATE_SCALE) - _RESOLUTION_UNITS // 2)) // _RESOLUTION_UNITS
+        size = len(self.counts[number])
+        self.counts[number] += np.bincount(k[(k >= 0) & (k < size)], minlength=size)
 
     def join(self, counts: dict[int, np.ndarray]) -> None:
         """Add the counts of another histogram of the same passes and the same first estimate."""

@@ -153,13 +153,14 @@ class _Reading:
                     self.parser.Parse(chunk, False)
                     fed += len(chunk)
                     if fed - self.last_tag > MAX_UNTAGGED:
-                        self._refuse(f"has more than {MAX_UNTAGGED >> 20} MB without the end of a tag")
+                        self._refuse(f"has {MAX_UNTAGGED >> 20} MB without the end of a tag")
                     progress.report(file.buffer.tell() / size)
                 self.parser.Parse(b"", True)
         except UnicodeError as problem:
-            named = f"in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say so" if self.is_named else \
-                "in UTF-8, though it names no other encoding. Save it again as UTF-8, or name its encoding"
-            raise RoadExtractionError(f"{self.path} is not written {named} in its first line.") from problem
+            raise RoadExtractionError(
+                f"{self.path} is not written in the encoding {self.encoding} that it declares. Save it again as UTF-8, and say so in its first line."
+                if self.is_named else f"{self.path} is not written in UTF-8, though it names no other encoding. Save it again as UTF-8, or name its "
+                "encoding in its first line.") from problem
         except ExpatError as problem:
             raise RoadExtractionError(f"{self.path} is not well-formed XML: {problem}. Is it {self.kind}, and whole?") from problem
         return self.root

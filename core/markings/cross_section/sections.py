@@ -343,64 +343,26 @@ def _lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:
                 row.put("seen", gap, lines.rows[k].at("seen", gap))
 
 
-def _beside(lines, known, k, station):
-    """Numbers of the other lines that are at a station, and how far left of line k they lie there."""
-    stations = np.array([station])
-    numbers = [j for j in lines.near(station) if j != k and _present(lines.rows[j], known[j], stations)[0]]
-    offset = lines.rows[k].at("d", stations)[0]
-    return numbers, np.array([lines.rows[j].at("d", stations)[0] - offset for j in numbers], float)
-
-
-def _present(row, known, stations):
-    """(N,) bool, whether a line is at some stations between those that it was known at first."""
-    return np.isfinite(row.at("d", stations)) & (stations >= known[0]) & (stations <= known[1])
-
-
-def _ahead(lines, end, step):
-    """The stations of a dash gap beyond the end of a line."""
-    ahead = end + step * np.arange(1, GAP_REACH + 1)
-    return ahead[(ahead >= 0) & (ahead < len(lines.s))]
-
-
 def lengthen_dashed(lines: _GridLines) -> None:
-    """A dashed line goes on by up to one gap where lines on both its sides do: the next dash is only missed after a gap's length."""
-    lines = _GridLines(lines.s, lines.rows, lines.names)
-    extents = [(row.begin, row.end) for row in lines.rows]
+    """A dashed line goes on by up to one gap where lines on both its sides do, beside the one it keeps to: it is only missed after a gap's length."""
+    tables = lines.tables()
+    d, seen = tables["d"], tables["seen"]
     for k, row in enumerate(lines.rows):
         if not row.pattern.startswith("dash") or row.end == row.begin:
             continue
-        for end, step in ((extents[k][1], 1), (extents[k][0], -1)):
-            neighbours, offsets = _beside(lines, extents, k, end)
-            sides = [_nearest(side * offsets > SECTIONS.min_boundary_spacing, np.abs(offsets)) for side in (1, -1)]
-            if None in sides:
+        for end, step in ((row.end, 1), (row.begin, -1)):
+            beside = np.array([j for j in d.spans.near(end, end).tolist() if j != k], int)
+            offset = d[beside, end] - d[k, end]
+            sides = [beside[there][np.argmin(np.abs(offset[there]))] for side in (1, -1)
+                     if (there := side * offset > SECTIONS.min_boundary_spacing).any()]
+            ahead, inner = (stations[(stations >= 0) & (stations < len(lines.s))] for stations in (
+                end + step * np.arange(1, GAP_REACH + 1), end - step * np.arange(GAP_REACH + 1)))
+            if len(sides) < 2:
                 continue
-            numbers = [neighbours[side] for side in sides]
-            left, right = (lines.rows[j] for j in numbers)
-            ahead = _ahead(lines, end, step)
-            go = np.all([_present(lines.rows[j], extents[j], ahead) & lines.rows[j].at("seen", ahead) for j in numbers], axis=0)
-            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
-            inner = end - step * np.arange(GAP_REACH + 1)
-            share = _share_across(row, left, right, inner[(inner >= 0) & (inner < len(lines.s))])
+            # where they part, as they do along a taper, it keeps to one
+            changes = [np.ptp(apart[np.isfinite(apart)]) for apart in d[np.array(sides)[:, None], inner] - d[k, inner]]
+            go = np.array([np.isfinite(d[j, ahead]) & seen[j, ahead] for j in sides]).all(axis=0)
+            ahead, along = ahead[:len(go) if go.all() else int(np.argmin(go))], sides[int(np.argmin(changes))]
             for name in ("d", "z"):
-                level, (course, begin) = row.at(name, np.array([end]))[0], (
-                    left.at(name, stations) * share + right.at(name, stations) * (1 - share) for stations in (ahead, np.array([end])))
-                row.put(name, ahead, course + level - begin[0])
+                row.put(name, ahead, tables[name][along, ahead] + tables[name][k, end] - tables[name][along, end])
             row.put("seen", ahead, True)
-
-
-def _share_across(row, left, right, inner):
-    """How a line lies between two others, 0 on the right one and 1 on the left one: where they part, as they do along a taper, it keeps to one.
-
-    `inner` are stations at its end, from there on.
-    """
-    apart = np.abs(np.stack([left.at("d", inner), right.at("d", inner)]) - row.at("d", inner))
-    apart = apart[:, np.isfinite(apart).all(axis=0)]
-    changes = np.ptp(apart, axis=1)
-    if abs(changes[0] - changes[1]) > SECTIONS.parting:
-        return float(changes[0] < changes[1])
-    return apart[1, 0] / (apart[0, 0] + apart[1, 0])
-
-
-def _nearest(which, distance):
-    rows = np.flatnonzero(which)
-    return rows[np.argmin(distance[rows])] if len(rows) else None
