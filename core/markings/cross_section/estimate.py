@@ -99,7 +99,7 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
     chosen = executor.run(phase, pieces, progress)
     for road, count in zip(roads, counts):
         check_cancelled()
-        yield _estimate_of_road(*road, *zip(*islice(chosen, count)), lane_width, weights)
+        yield _estimate_of_road(*road, list(islice(chosen, count)), lane_width, weights)
 
 
 def _remembered(candidates, evidence, weights):
@@ -128,9 +128,10 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int,
             transitions(candidates, sections, known, lane_width, left, weights))
 
 
-def _estimate_of_road(candidates, evidence, first_direction, sections, misnamed, transition, lane_width, weights):
-    """The RoadEstimate of the most probable sequence of cross-sections of one road, of whose stretches `sections_of_stretch` gave so much."""
-    sections, transition = Sections.joined(sections), np.concatenate(transition)
+def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, weights):
+    """The RoadEstimate of the most probable sequence of cross-sections of one road, of whose stretches `sections_of_stretch` gave the parts."""
+    of_stretches, misnamed, of_gaps = zip(*parts)
+    sections, transition = Sections.joined(of_stretches), np.concatenate(of_gaps)
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     lined = np.flatnonzero(candidates.painted.any(1) | evidence.bare)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))

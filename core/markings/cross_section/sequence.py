@@ -463,13 +463,13 @@ PLACE = 0.5   # derived: m across at which cross-sections are compared
 INTERVALS_AT_ONCE = 32   # derived: of which cross-sections are compared with each other
 
 
-def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: Sequence[np.ndarray],
+def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, lane_width: float, left: np.ndarray,
                 weights: EstimateWeights) -> np.ndarray:
     """(N - 1, K, K) nats of going from each cross-section of an interval to each of the next of those of which something is known.
 
     known : (N,) int, intervals, ascending, of the candidates and sections of all intervals
     lane_width : m, usual
-    left : of what was known of lanes, and of directions, what is left after the way to the next one, (N - 1,) 0 to 1 each
+    left : (2, N - 1) of what was known of lanes, and of directions, what is left after the way to the next one, 0 to 1
     """
     kept = sections.cost.shape[1]
     result = np.empty((max(len(known) - 1, 0), kept, kept))

@@ -70,7 +70,10 @@ def _parts(cells):
         strip = rest[_in_lines(cells[rest], COMPOUNDS.max_scan_gap, window)]
         before, count = count, _number_strips(parts, count, cells, strip, COMPOUNDS.max_scan_gap, size, min_length)
         for _, inside in members_of(np.where(parts >= before, parts, -1)):
-            parts[inside[~even_strip(cells[inside])[0]]] = -1
+            even, _ = even_strip(cells[inside])
+            if not even.all():   # without what touched it the strip may be several, such as the lines before and behind an island
+                parts[inside] = -1
+                count = _number_strips(parts, count, cells, inside[even], COMPOUNDS.max_scan_gap, size, min_length)
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], COMPOUNDS.max_paint_gap, COMPOUNDS.min_run_across)]
@@ -161,11 +164,7 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
     """
     size = CELL_UNITS * COORDINATE_SCALE
     strips = _linked(cells[rows], gap / size, gap_across / size)
-    number = strips.max(initial=-1) + 1
-    first, last = np.full(number, np.inf), np.full(number, -np.inf)
-    np.minimum.at(first, strips, cells[rows, 0])
-    np.maximum.at(last, strips, cells[rows, 0])
-    long = (last - first) * size >= least
+    long = np.array([np.ptp(cells[rows[members], 0]) for _, members in members_of(strips)]) * size >= least
     parts[rows] = np.where(long, count + np.cumsum(long) - 1, -1)[strips]
     return count + int(long.sum())
 

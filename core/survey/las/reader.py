@@ -192,7 +192,7 @@ def read_headers(paths: Iterable[str | os.PathLike[str] | CloudHeader], warn: Ca
     """
     unique: dict[str, Any] = {}
     for path in paths:
-        unique.setdefault(os.path.realpath(getattr(path, "path", path)), path)
+        unique.setdefault(os.path.realpath(path.path if isinstance(path, CloudHeader) else path), path)
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
     files = [path if isinstance(path, CloudHeader) else read_header(Path(path), given) for path in unique.values()]

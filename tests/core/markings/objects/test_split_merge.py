@@ -104,6 +104,15 @@ def test_hatching_is_cut_from_the_line_that_borders_it():
     assert np.bincount(labels[owner == 0]).argmax() not in bars and len(np.unique(bars)) == 9
 
 
+def test_the_lines_before_and_behind_the_outline_of_an_island_are_two():
+    records, owner = paint((0, 20, -0.06, 0.06), (40, 70, -0.06, 0.06), (20, 40, -0.06, 0.06), (20, 40, -0.06, 0.06))
+    bulge = to_units(0.6 * np.sin(np.pi * (records["s"] * 1e-4 - 20.0) / 20.0))
+    records["d"] += (owner == 2) * bulge - (owner == 3) * bulge
+    labels = split(records)
+    assert share_together(labels, owner, 0) > 0.95 and share_together(labels, owner, 1) > 0.95
+    assert np.bincount(labels[owner == 0]).argmax() != np.bincount(labels[owner == 1]).argmax()
+
+
 def test_a_stop_line_alone_stays_whole():
     assert len(np.unique(split(paint((0, 0.5, 0.0, 3.2))[0]))) == 1
 
