@@ -71,7 +71,7 @@ def apply_corrections(kind: _LineKind, pieces: list[dict[str, Any]], corrections
     for correction in corrections:
         reach = max(CORRECTING.moved_from, kind.reach) if correction.action == "move" else kind.reach
         spans = _spans_along([piece[kind.key][:, :2] for piece in pieces], correction, reach)
-        if correction.action == "draw" and not correction.on_a_road or correction.action != "draw" and not spans:
+        if not (correction.on_a_road if correction.action == "draw" else spans):
             continue
         matched.add(correction.row)
         like = pieces[spans[0][0]] if spans and correction.action == "move" else None

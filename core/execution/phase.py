@@ -289,7 +289,7 @@ def _tree(value, arrays):
     kind = type(value)
     if kind in PLAIN:
         return value
-    if kind is list or kind is tuple:
+    if kind in (list, tuple):
         return {kind.__name__: [item if type(item) in PLAIN else _tree(item, arrays) for item in value]}
     if isinstance(value, (np.ndarray, np.generic)):
         return _tree_of_array(value, arrays)

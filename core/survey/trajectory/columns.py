@@ -302,7 +302,7 @@ def _agreeing_headings(sample, time, others, pairs):
 def _local_pairs(sample, time, others):
     """x and y of local coordinates, whose values are too small to be recognised: only in the order x, y, z with time before or after it."""
     first = next((k for k in range(sample.shape[1]) if k != time and not _is_counter(sample[:, k])), 0)
-    if not set(range(first, first + 3)) <= set(others) or time is not None and time > first + 3:
+    if not set(range(first, first + 3)) <= set(others) or (time or 0) > first + 3:
         return []
     unexplained = [k for k in others if k >= first + 3 and _size(sample, k) > 360.0]
     speed = np.hypot(*(_rate(sample, time, k, 98) for k in (first, first + 1)))
