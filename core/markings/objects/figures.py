@@ -75,7 +75,7 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
                 continue
             tried.add(members)
             size = box[subset][:, [1, 3]].max(axis=0) - box[subset][:, [0, 2]].min(axis=0)
-            if size.min() >= FIGURES.figure_size[0] and size.max() <= FIGURES.figure_size[1]:
+            if FIGURES.figure_size[0] <= size.min() <= size.max() <= FIGURES.figure_size[1]:
                 large.append(members)
         if large:
             yield large
