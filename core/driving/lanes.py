@@ -188,42 +188,37 @@ def _parts(boundaries, estimate, lane_width, line_distance):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
-        if span.count == 2 or bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
-            part = _where_driven(part, boundaries.s, estimate, span, lane_width, not bare.any())
+        if bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
+            part = _where_driven(part, boundaries.s, estimate, span, lane_width)
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
             drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
 
-def _where_driven(part, s, estimate, span, lane_width, lined):
-    """The LaneTrack of a lane of a strip between two borders, `lined` if both are painted, moved from its share of it to where it was driven.
+def _where_driven(part, s, estimate, span, lane_width):
+    """The LaneTrack of a lane of a strip that has no paint on both its sides, moved from its share of the strip to where it was driven.
 
     Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
-    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or, unless both its borders are painted,
-    are as unlike as lanes of a road are, both as probable. Of two lanes the other one lies alike. Vehicles keep to the middle with some scatter;
-    beside a line they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive
-    is surer.
+    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or are as unlike as lanes of a road are,
+    both as probable. Vehicles keep to the middle with some scatter; beside a line they rarely give way to something and show nothing. All these are
+    normal errors about the middle, so it is moved as far as the drive is surer.
     """
     evidence, weights = estimate.evidence, estimate.weights
-    passes = np.flatnonzero(np.isfinite(evidence.driven[:, span.interval]))
-    drives, ahead = _drives(part.stations, s, estimate, passes), evidence.directions[passes] == span.direction
-    beside = drives[ahead] - part.d
+    passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
+    beside = _drives(part.stations, s, estimate, passes) - part.d
     inside = np.abs(beside) < part.width / 2
-    if lined and span.count == 2 and not inside.any():
-        beside = part.d + (1 - 2 * span.place) * part.width - drives
-        inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
     beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
     anywhere, alone = (span.count * room) ** 2 / 12, span.count == 1
     full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
-    of_place = np.stack([0.0 * anywhere, anywhere] if alone or lined else [anywhere, anywhere + weights.width_sigma**2])
+    of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
     variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
     probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
     nothing = alone * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
     share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / (probable.sum(axis=0) + nothing), 0.0)
-    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if alone or lined else share > 0.5)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if alone else share > 0.5)
 
 
 def _drives(stations, s, estimate, passes):

@@ -368,13 +368,6 @@ def test_lanes_of_different_widths_keep_them_where_the_lines_between_them_end(la
         assert np.abs(offsets - lane).max() < 0.05
 
 
-def test_two_lanes_that_keep_to_their_lines_with_bare_asphalt_between_them_lie_there():
-    """As where turning lanes of two carriageways face each other over a median without paint: one was driven, the other lies alike."""
-    street = Street(vehicle=-3.4).paint(-5.0).paint(-8.3, kind="edge").paint(5.0).paint(8.3, kind="edge")
-    lines, _ = street.lanes()
-    assert sorted(offset for offset in middle(street, lines) if abs(offset) < 5.0) == pytest.approx([-3.4, 3.4], abs=0.15)
-
-
 def test_a_lane_goes_on_behind_where_its_road_crosses_itself():
     """A ramp leads around three quarters of a circle and over the road that it comes from."""
     bends = (0.0, 80.0), (1 / 25, 37.5 * np.pi), (0.0, 80.0)
