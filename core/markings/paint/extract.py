@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 
 import numpy as np
@@ -76,8 +76,8 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
-    phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
+    ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
+    phase = Phase(paint_of_window, source, (settings, ways, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
         paint.store.adopt(index, executor.folder)
@@ -101,10 +101,14 @@ class ScannerScatter:
 
     shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
         out, and are taken for not noisy
+    points : {(road, window): (scanners,) points of each scanner}
+    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
+        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two
     """
 
     shares: dict[int, float]
-    points: dict[WindowKey, np.ndarray]   # {(road, window): (scanners,) points of each scanner}
+    points: dict[WindowKey, np.ndarray]
+    differences: dict[int, float] = field(default_factory=dict)
 
     @property
     def noisy(self) -> list[int]:
@@ -112,8 +116,16 @@ class ScannerScatter:
 
     def noisy_windows(self, road: int) -> set[int]:
         """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
+        return self._windows_of(road, self.noisy)
+
+    def photographed_windows(self, road: int) -> set[int]:
+        """The windows of a road in which the brightness of most points is that of photographs."""
+        return self._windows_of(road, [scanner for scanner, ratio in self.differences.items() if ratio < ASPHALT.photographed])
+
+    def _windows_of(self, road, scanners):
+        """The windows of a road in which most points are of some scanners."""
         return {window for (of, window), count in self.points.items()
-                if of == road and 2 * sum(count[k] for k in self.noisy if k < len(count)) > count.sum()}
+                if of == road and 2 * sum(count[k] for k in scanners if k < len(count)) > count.sum()}
 
     def summary(self, length: float) -> str:
         """A sentence for a log; `length` is that of a window, metres."""
@@ -123,6 +135,10 @@ class ScannerScatter:
         text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
         windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
         filled = sum(bool(count.sum()) for count in self.points.values())
+        photographed = sum(len(self.photographed_windows(road)) for road in {road for road, _ in self.points})
+        if photographed:
+            text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint is "
+                     "compared with the ground around each spot.")
         if not windows:
             return text + " Paint is searched for in the image."
         if windows == filled:
@@ -150,11 +166,12 @@ def scanner_scatter(road_points: RoadPoints) -> Work:
     missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
     if missed:
         squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
-    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
+    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts,
+                          _shares(squares, 3))
 
 
 def scatter_of_windows(road_points: RoadPoints,
-                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray] | None]]:
+                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...] | None]]:
     """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
 
     Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
@@ -166,13 +183,15 @@ def scatter_of_windows(road_points: RoadPoints,
     return result
 
 
-def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scanner, number of points and scatter as a share of asphalt's level, (squares,) each, of squares of 1 m seen by one scanner from one distance.
+def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
+    """Scanner, number of points, scatter as a share of asphalt's level and differences of neighbours as a share of the variance, (squares,) each,
+    of squares of 1 m seen by one scanner from one distance.
 
     Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
+    Differences are NaN where few points have a neighbour in their cell of 4 cm.
     """
     if not len(points):
-        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0)
+        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0), np.empty(0)
     points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
     value, scanner = points.intensity, points.scanner
     side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
@@ -184,18 +203,37 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndar
         square += key.astype(np.int32) - low
     order = order_by(value, square)
     value = value[order].astype(float)
-    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
+    first = np.r_[True, np.diff(square[order]) != 0]
+    starts, number = np.flatnonzero(first), np.cumsum(first) - 1
     count = np.diff(np.r_[starts, len(value)])
-    starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
+    lower = np.arange(len(value)) - starts[number] < count[number] // 2
+    differences = _differences_of_neighbours(value[lower], number[lower], [points.records[key][order[lower]] // CELL_UNITS for key in "sd"], len(count))
+    many = count >= ASPHALT.min_square_points
+    starts, count, differences = starts[many], count[many], differences[many]
     median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
-    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit]
+    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], differences[lit]
 
 
-def _shares(squares):
-    """{scanner: median scatter} of the results of `_scatter_in_squares` in several windows."""
+def _differences_of_neighbours(value, square, cell, squares):
+    """(squares,) mean squared difference of values of neighbours in a cell, by the variance in the square; NaN where few have neighbours."""
+    order = np.lexsort((*cell, square))
+    pairs = np.all([np.diff(key[order]) == 0 for key in (*cell, square)], axis=0)
+    of = square[order][1:][pairs]
+    neighbours, points = np.bincount(of, minlength=squares), np.bincount(square, minlength=squares)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = np.bincount(square, value, squares) / points
+        variance = np.bincount(square, (value - mean[square]) ** 2, squares) / (points - 1)
+        ratio = np.bincount(of, np.diff(value[order])[pairs] ** 2, squares) / neighbours / variance
+    return np.where((neighbours >= ASPHALT.min_neighbours) & (variance > 0), ratio, np.nan)
+
+
+def _shares(squares, place=2):
+    """{scanner: median} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
     if not squares:
         return {}
-    scanner, count, scatter = (np.concatenate(parts) for parts in zip(*squares))
+    scanner, count, scatter = (np.concatenate([entry[k] for entry in squares]) for k in (0, 1, place))
+    known = np.isfinite(scatter)
+    scanner, count, scatter = scanner[known], count[known], scatter[known]
     points = np.bincount(scanner, count)
     return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}
