@@ -51,7 +51,7 @@ class _AsphaltWeights:
     scatter_square: float = 1.0   # m
     photographed: float = 0.75   # of the variance: neighbouring points differ less by brightness of photographs, by a scanner's twice as much
     min_square_points: int = 30   # points of one scanner
-    min_neighbours: int = 10   # pairs of points in one cell of a square
+    min_neighbours: int = 5   # pairs of points in one cell of a square
     min_scanner_points: int = 500   # in squares, below which the scatter of a scanner is unknown
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from os import PathLike
 
 import numpy as np
+from scipy import ndimage
 
 from ...common.arrays import order_by
 from ...common.progress import Progress
@@ -133,9 +134,9 @@ class ScannerScatter:
             return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
         listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
         text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
-        windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
+        windows, photographed = (sum(len(of(road)) for road in {road for road, _ in self.points})
+                                 for of in (self.noisy_windows, self.photographed_windows))
         filled = sum(bool(count.sum()) for count in self.points.values())
-        photographed = sum(len(self.photographed_windows(road)) for road in {road for road, _ in self.points})
         if photographed:
             text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint is "
                      "compared with the ground around each spot.")
@@ -203,29 +204,29 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
         square += key.astype(np.int32) - low
     order = order_by(value, square)
     value = value[order].astype(float)
-    first = np.r_[True, np.diff(square[order]) != 0]
-    starts, number = np.flatnonzero(first), np.cumsum(first) - 1
+    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
     count = np.diff(np.r_[starts, len(value)])
-    lower = np.arange(len(value)) - starts[number] < count[number] // 2
-    differences = _differences_of_neighbours(value[lower], number[lower], [points.records[key][order[lower]] // CELL_UNITS for key in "sd"], len(count))
-    many = count >= ASPHALT.min_square_points
-    starts, count, differences = starts[many], count[many], differences[many]
+    starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
     median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
-    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], differences[lit]
+    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, value, order, starts[lit], count[lit] // 2)
 
 
-def _differences_of_neighbours(value, square, cell, squares):
-    """(squares,) mean squared difference of values of neighbours in a cell, by the variance in the square; NaN where few have neighbours."""
-    order = np.lexsort((*cell, square))
-    pairs = np.all([np.diff(key[order]) == 0 for key in (*cell, square)], axis=0)
-    of = square[order][1:][pairs]
-    neighbours, points = np.bincount(of, minlength=squares), np.bincount(square, minlength=squares)
+def _differences(points, value, order, starts, count):
+    """(squares,) mean squared difference of the values of points in one cell, by the variance of the square; NaN where few share a cell.
+
+    value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
+    """
+    square = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
+    keys = np.stack([square, *(points.records[key][order[place]] // CELL_UNITS for key in "sd")])
+    by_cell = np.lexsort(keys[::-1])
+    of = np.where((np.diff(keys[:, by_cell]) == 0).all(axis=0), square[1:], -1)
+    few = np.bincount(of + 1, minlength=len(count) + 1)[1:] < ASPHALT.min_neighbours
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.bincount(square, value, squares) / points
-        variance = np.bincount(square, (value - mean[square]) ** 2, squares) / (points - 1)
-        ratio = np.bincount(of, np.diff(value[order])[pairs] ** 2, squares) / neighbours / variance
-    return np.where((neighbours >= ASPHALT.min_neighbours) & (variance > 0), ratio, np.nan)
+        ratio = (ndimage.mean(np.diff(value[place][by_cell]) ** 2, of, range(len(count)))
+                 / ndimage.variance(value[place], square, range(len(count))))
+    return np.where(few, np.nan, ratio)
 
 
 def _shares(squares, place=2):
