@@ -138,8 +138,8 @@ class ScannerScatter:
                                  for of in (self.noisy_windows, self.photographed_windows))
         filled = sum(bool(count.sum()) for count in self.points.values())
         if photographed:
-            text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint is "
-                     "compared with the ground around each spot.")
+            text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint "
+                     "is compared with the ground around each spot.")
         if not windows:
             return text + " Paint is searched for in the image."
         if windows == filled:
