@@ -54,7 +54,7 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: Ma
     count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
     sums = np.bincount(labels[mask], np.minimum(z[mask], settings.highest), count)
     large = sums >= settings.evidence
-    if rim is not None and large.any():
+    if rim is not None and above is not None and large.any():
         numbers = np.cumsum(large) * large
         large[large] = _paint_of_photographs(z, mask, numbers[labels], rim, above, settings.separation)
     elif above is not None and large.any():

@@ -92,7 +92,8 @@ def paint_of_window(source: PaintSource, item: tuple[int, int], settings: Markin
     brightness of photographs}; `masked` : whether the mask's pixels are asked for.
     """
     road, window = item
-    records, x, y = _Window(source, road, window).extract(settings, *(window in some for some in ways.get(road, ((), ()))), masked)
+    noisy, photographed = (window in some for some in ways.get(road, ((), ())))
+    records, x, y = _Window(source, road, window).extract(settings, noisy, photographed, masked)
     with source.paint.part() as part:
         part.append(road, records)
     return part.index(), x, y
