@@ -206,7 +206,7 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     if raster is None:
         return None
     dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > RETURN.noisy_raster_share * clear
+    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)

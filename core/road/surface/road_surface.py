@@ -94,11 +94,11 @@ def without_overlaps(frame: RoadFrame, stretches: Sequence[tuple]) -> list[tuple
         if i >= j or stretches[i][0] == stretches[j][0]:
             continue
         for part in _polygons(shapely.intersection(rest[i], rest[j])):
-            (height, *claim), (other_height, *other_claim) = (_claim(frame, stretches[k], part) for k in (i, j))
+            (height, *claim), (other_height, *other_claim) = _claim(frame, stretches[i], part), _claim(frame, stretches[j], part)
             if abs(height - other_height) < FRAME.level_separation:
                 loser = i if claim > other_claim else j
                 rest[loser] = shapely.difference(rest[loser], part)
-    return [row for stretch, left in zip(stretches, rest) for row in ([stretch] if left is stretch[-1] else _parts(frame, stretch, left))]
+    return [row for stretch, left in zip(stretches, rest) for row in _parts(frame, stretch, left)]
 
 
 def _claim(frame, stretch, part):
@@ -109,10 +109,16 @@ def _claim(frame, stretch, part):
 
 def _parts(frame, stretch, left):
     """A row for each part that is left of a stretch."""
-    road, status, start, end, area, points, _ = stretch
+    road, status, start, end, area, points, whole = stretch
+    if left is whole:
+        return [stretch]
     places, half = shapely.get_coordinates(left, include_z=True), SURFACE.min_surface_width / 2
     vertices, result = cKDTree(places[:, :2]), []
-    for part in _polygons(shapely.intersection(left, shapely.buffer(shapely.buffer(left, -half), 2 * half))):
+    wide = shapely.buffer(shapely.buffer(left, -half), 2 * half)
+    # on the grid of the layer, so that its rounding leaves the parts valid
+    for part in _polygons(shapely.intersection(left, wide, grid_size=10.0 ** -COORDINATE_DECIMALS)):
+        if shapely.buffer(part, -half).is_empty:
+            continue
         part = shapely.transform(part, lambda xyz: np.c_[xyz[:, :2], places[vertices.query(xyz[:, :2])[1], 2]], include_z=True)
         s, _ = frame.road(road).locate(*shapely.get_coordinates(part).T)
         first, last = np.round([np.fmax(np.fmin.reduce(s), start), np.fmin(np.fmax.reduce(s), end)], 3).tolist()

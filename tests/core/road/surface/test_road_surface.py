@@ -16,6 +16,7 @@ APART, LENGTH = 20.0, 100.0   # m between two tracks, and of each
 def test_where_two_roads_cross_on_one_level_the_ground_is_drawn_once_and_under_a_bridge_twice(up):
     _, surface = extract_road_surface(*crossing_roads(up))
     drawn, covered = sum(row["area_m2"] for row in surface.rows), shapely.union_all(shapely.force_2d(surface.geometries)).area
+    assert shapely.is_valid(surface.geometries).all()
     assert drawn - covered == pytest.approx((2 * HALF) ** 2 if up else 0.0, abs=0.5)
     assert covered == pytest.approx(2 * HALF * (120.0 - 2 * HALF), rel=0.02)
 
