@@ -133,7 +133,10 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     if "both" in points_by_method:
         first, second = (points_by_method[method] for method in METHODS)
         boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)
-        lengths = boundaries.length_by_method = {method: _measured_length(points_by_method[method]) for method in METHODS}
+        for method in METHODS:
+            curbs, goes_on = _measured(points_by_method[method])
+            boundaries.length_by_method[method] = float(np.diff(curbs.station)[goes_on].sum())
+        lengths = boundaries.length_by_method
         if any(lengths.values()):
             progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                          f"they lie more than 5 cm apart along {boundaries.differences.length.sum():.0f} m.")
@@ -152,12 +155,6 @@ def _measured(points):
     points = points[np.lexsort((points.station, points.side.astype(str), points.road))]
     same = (points.road[1:] == points.road[:-1]) & (points.side[1:] == points.side[:-1])
     return points, same & (np.diff(points.station) <= CURBS.max_joined_gap)
-
-
-def _measured_length(points):
-    """m of curb along the road."""
-    points, goes_on = _measured(points)
-    return float(np.diff(points.station)[goes_on].sum())
 
 
 def _curb_at(points, goes_on, s):
