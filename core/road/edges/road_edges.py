@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -108,8 +109,9 @@ class RoadEdges(LayerRows):
             return self
         added = joined_pieces(pieces, frame, self.crs)
         added = replace(added, chain=added.chain + max(self.chain.max(initial=-1), -1) + 1)
-        columns = {name: np.append(getattr(self, name), getattr(added, name)) for name in self.names() if name != "course"}
-        return replace(self, **{**columns, "edge": np.arange(len(self) + len(added))}, course=self.course.and_lines(added.course))
+        columns: dict[str, Any] = {name: np.append(getattr(self, name), getattr(added, name)) for name in self.names() if name != "course"}
+        columns.update(edge=np.arange(len(self) + len(added)), course=self.course.and_lines(added.course))
+        return replace(self, **columns)
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
