@@ -254,7 +254,8 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
         if deep.sum(axis=0).max() * SURFACE.row_length < SURFACE.min_street_width \
                 or _level_flanks(between, first, height, limit, offsets) > SURFACE.max_level_flanks * (end - first) * SURFACE.row_length:
             continue
-        reach = median_filter(_outermost(between & ground[rows], offsets), SURFACE.smoothed_rows, mode="nearest")
+        outermost = np.where(between & ground[rows], offsets + SURFACE.column_width / 2, -np.inf).max(axis=1)
+        reach = median_filter(outermost, SURFACE.smoothed_rows, mode="nearest")
         result[rows] = np.fmax(limit[rows], np.minimum(reach, farthest[rows]))
     return result
 
@@ -295,11 +296,6 @@ def _level_flanks(street, first, height, limit, offsets):
     differences = differences[np.isfinite(differences)]
     share = float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
     return share * sum(map(len, level)) * SURFACE.column_width if share <= 0.5 else np.inf
-
-
-def _outermost(cells, offsets):
-    """(N,) m, the outer end of the outermost cell of each row that is on; minus infinity where none is."""
-    return np.where(cells, offsets + SURFACE.column_width / 2, -np.inf).max(axis=1)
 
 
 # Where no curb was found and the points lie too far apart to say that there is none.
