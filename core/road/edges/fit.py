@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import splev, splprep, splrep
@@ -191,7 +192,7 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
-def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, changes: np.ndarray) -> Iterator[tuple[int, np.ndarray, dict[str, float]]]:
+def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, changes: np.ndarray) -> Iterator[tuple[int, np.ndarray, dict[str, Any]]]:
     """The stretches of a line, each of one kind.
 
     points, t, residual : as of EdgeCurve, N points
