@@ -52,7 +52,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     lines, of_table = 0, np.ascontiguousarray(table["road"])
     items = [(road.number, side, rows[rows["side"] == side]) for road in frame.roads
              for rows in (table[stretch_of(of_table, road.number, road.number)],) for side in ("left", "right")]
-    phase = Phase(edges_of_side, NoSource(), (frame, settings.max_gap), lambda item: f"road {item[0]}, {item[1]} side")
+    phase = Phase(_edges_of_side, NoSource(), (frame, settings.max_gap), lambda item: f"road {item[0]}, {item[1]} side")
     fitted = iter(list(executor.run(phase, items)))
     for road in frame.roads:
         of_road: list[EdgePiece] = []
@@ -209,7 +209,7 @@ def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, change
                                                            rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))))
 
 
-def edges_of_side(source: NoSource, item: tuple[int, str, np.ndarray], frame: RoadFrame, max_gap: float) -> list[EdgePiece]:
+def _edges_of_side(source: NoSource, item: tuple[int, str, np.ndarray], frame: RoadFrame, max_gap: float) -> list[EdgePiece]:
     """The phase that fits the edges of one side, numbered from 0; item : number of the road, side, and its rows of `point_table`."""
     (road, side, rows), pieces = item, []
     for number, (points, bridged, lowered) in enumerate(_pieces(rows, max_gap)):
