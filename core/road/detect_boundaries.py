@@ -13,6 +13,7 @@ from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.in_step import in_step
+from ..execution.phase import THREADS
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import lattice_of
 from ..survey.open_survey import Survey
@@ -129,7 +130,8 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
-    boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress)))
+    boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress),
+                                                        THREADS if survey is None else survey.executor.passing()))
     if "both" in points_by_method:
         first, second = (points_by_method[method] for method in METHODS)
         boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)
