@@ -11,15 +11,16 @@ from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, near
 from ..weights import CURBS, PROFILE
 
 
-def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> CurbSteps:
+def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, least_sharpness: float = -np.inf) -> CurbSteps:
     """Steps on every single profile of one side.
 
     min_height, max_height : m, of a step
+    least_sharpness : as of `measure_corners`
 
     Returns CurbSteps, sorted by profile, then outward
     """
     rows, cells = _rising_cells(lines, min_height, max_height)
-    return measure_corners(lines, rows, cells, min_height, max_height)
+    return measure_corners(lines, rows, cells, min_height, max_height, least_sharpness)
 
 
 def _rising_cells(lines, min_height, max_height):
@@ -32,7 +33,9 @@ def _rising_cells(lines, min_height, max_height):
     column = indices - row * low.shape[1]
     offset = column * spacing
     own_low, own_high = low.ravel().take(indices), high.ravel().take(indices)
-    top = _max_ahead(high, span).ravel().take(indices) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
+    # the highest of this and the following cells
+    highest = maximum_filter1d(np.fmax(high, -np.inf), span + 1, axis=1, mode="constant", cval=-np.inf, origin=-((span + 1) // 2))
+    top = highest.ravel().take(indices) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
     # the cell before must still be road: the last occupied one within the window
     before = np.full(len(indices), np.nan)
     near = (indices[1:] - indices[:-1] <= span) & (row[1:] == row[:-1])
@@ -69,11 +72,6 @@ def _stays_up(low, base, slope, rows, columns, min_height, spacing):
     return (count < PROFILE.min_raised_cells) | (np.where(raised, rise, 0.0).sum(1) >= PROFILE.min_raised_height_share * min_height * count)
 
 
-def _max_ahead(values, span):
-    """Largest value in this and the following cells, NaN taken as none."""
-    return maximum_filter1d(np.fmax(values, -np.inf), span + 1, axis=1, mode="constant", cval=-np.inf, origin=-((span + 1) // 2))
-
-
 # Steps where the scanner's noise hides a curb in a single profile: measured in the average of several profiles.
 #
 # The heights of a spinning multi-beam scanner scatter by centimetres, and positions that drift between one view and the next blur a face sideways.
@@ -106,14 +104,14 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
                             np.maximum(min_height, PROFILE.single_view_sigmas * lines.spread)[:, None], max_height)
-        result = CurbSteps.join([result, single[~_beside(single, result)]])
+        result = CurbSteps.join([result, single[~beside(single, result)]])
     for steps in before_plants:
         # level ground behind is the surer sign
-        result = CurbSteps.join([result, steps[~_beside(steps, result)]])
+        result = CurbSteps.join([result, steps[~beside(steps, result)]])
     return result[np.lexsort((result.u, result.profile))]
 
 
-def _beside(steps, others):
+def beside(steps: CurbSteps, others: CurbSteps) -> np.ndarray:
     """(M,) bool: does one of the others lie within PROFILE.same_step_distance metres across in the same profile?"""
     return nearest_distance(steps.profile * 1000.0 + steps.u, others.profile * 1000.0 + others.u) < PROFILE.same_step_distance
 
@@ -139,7 +137,8 @@ def _steps_of(lines, best, min_height, max_height):
             & (best["rise"] >= CURBS.min_steep_share * best["height"]) & (best["scatter"] <= CURBS.max_averaged_scatter)
             & (np.abs(best["before"]) <= CURBS.max_road_slope) & (np.abs(best["behind"]) <= CURBS.max_road_slope))
     score = np.where(good, best["rise"], -np.inf)
-    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(PROFILE.min_step_spacing / lines.spacing)))))
+    about = 2 * int(round(PROFILE.min_step_spacing / lines.spacing)) + 1
+    rows, cells = np.nonzero(good & (score >= maximum_filter1d(score, about, axis=1, mode="constant", cval=-np.inf)))
     pick = {name: values[rows, cells] for name, values in best.items()}
     count = np.diff(lines.starts).reshape(lines.shape)
     reach = int(round((CURBS.blurred_face_half_width + CURBS.road_fit_length) / lines.spacing))
@@ -237,8 +236,3 @@ def _overlap(size, by):
     """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
     by = max(-size, min(by, size))
     return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
-
-
-def _largest_near(values, span):
-    """Largest value within `span` cells either side."""
-    return maximum_filter1d(values, 2 * span + 1, axis=1, mode="constant", cval=-np.inf)
