@@ -201,12 +201,11 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
             file.write(FORMAT + CHECKSUM.pack(check))
             file.writelines(contents)
         os.replace(unfinished, path)
-    except OSError as error:
-        if error.filename is None:   # of a full disk
+    except BaseException as error:
+        unfinished.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.filename is None:   # of a full disk
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _contents(value):
@@ -250,7 +249,7 @@ def is_whole(path: Path) -> bool:
 
 def _content(path):
     """What follows the checksum in a file."""
-    with open(path, "rb") as file:
+    with open(path, "rb", buffering=0) as file:
         if file.read(len(FORMAT)) != FORMAT:
             raise OSError(f"{path} is no file of ours")
         check, content = file.read(CHECKSUM.size), file.read()
@@ -339,7 +338,7 @@ def _value(tree, arrays):
         return arrays[content]
     if kind == "scalar":
         return arrays[content][()]
-    return {_value(key, arrays): _value(item, arrays) for key, item in content}
+    return {key if type(key) in PLAIN else _value(key, arrays): item if type(item) in PLAIN else _value(item, arrays) for key, item in content}
 
 
 def _object(kind, state):

@@ -49,7 +49,9 @@ class _AsphaltWeights:
     # When a scanner is noisy.
     noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
     scatter_square: float = 1.0   # m
+    photographed: float = 0.75   # of the variance: neighbouring points differ less by brightness of photographs, by a scanner's twice as much
     min_square_points: int = 30   # points of one scanner
+    min_neighbours: int = 5   # pairs of points in one cell of a square
     min_scanner_points: int = 500   # in squares, below which the scatter of a scanner is unknown
 
 
@@ -410,6 +412,34 @@ class NOISY:
     # Than what shines beneath a parked car.
     uncovered: float = 3.0   # of pieces that nothing covers
     per_cover: float = 9.0   # times the share of points beneath an object
+
+
+@table
+class PHOTOGRAPHS:
+    """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
+
+    The nats are rounded from a logistic regression over pieces of a simulated town street as a scanner saw it, and of this and a street without
+    paint in the brightness of photographs with shadows, seams and crossfall of light.
+    """
+
+    median_cells: int = 3   # of the median that evens single cells out before the level is taken
+    level_cells: int = 23   # 0.92 m, the diameter of the disc that bright ground has room for and paint has not
+    half_maximum_cells: int = 7   # 28 cm in which the brightest cell is looked for
+    square_cells: int = 25   # scatter is taken in squares of 1 m
+    min_square_cells: int = 150   # of a square whose scatter is known
+    # two pairs of quantiles of a normal distribution, each with its standard deviations below the median: the first stays asphalt where paint covers
+    # two thirds of a square, the second where dark joints and rails cover a fourth
+    quantiles: tuple[tuple[float, float], ...] = (0.10, 1.2816), (0.30, 0.5244), (0.25, 0.6745), (0.45, 0.1257)
+    painted_square: float = 1.5   # times the scatter of its darker half that its middle scatters: a square with much paint
+    squares_around: int = 5   # squares in each direction: their median is the scatter of the one in the middle
+    least_scatter: float = 0.01   # of the brightness of asphalt, where values are coarse
+    beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
+    most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
+    most_breadth: float = 0.5   # m that count at most: arrows and words are broader
+    rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
+    # of one; the logarithm of brightness by `separation`; the share of it left beside the piece, and of its contrast with its darker side left on the
+    # other; breadth, m; the logarithm of length over breadth; nearness of the rim
+    nats: tuple[float, ...] = 1.3, 1.4, -6.8, -2.6, -7.2, 1.5, -6.0
 
 
 @table

@@ -13,6 +13,7 @@ from ..common.arrays import mask_runs, stretch_of
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..execution.in_step import in_step
+from ..execution.phase import THREADS
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.lattice.scan_lattice import lattice_of
 from ..survey.open_survey import Survey
@@ -129,11 +130,15 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     ground : MeasuredGround of it that an earlier stage kept, or None
     """
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
-    boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress)))
+    boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress),
+                                                        THREADS if survey is None else survey.executor.passing()))
     if "both" in points_by_method:
         first, second = (points_by_method[method] for method in METHODS)
         boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)
-        lengths = boundaries.length_by_method = {method: _measured_length(points_by_method[method]) for method in METHODS}
+        for method in METHODS:
+            curbs, goes_on = _measured(points_by_method[method])
+            boundaries.length_by_method[method] = float(np.diff(curbs.station)[goes_on].sum())
+        lengths = boundaries.length_by_method
         if any(lengths.values()):
             progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                          f"they lie more than 5 cm apart along {boundaries.differences.length.sum():.0f} m.")
@@ -152,12 +157,6 @@ def _measured(points):
     points = points[np.lexsort((points.station, points.side.astype(str), points.road))]
     same = (points.road[1:] == points.road[:-1]) & (points.side[1:] == points.side[:-1])
     return points, same & (np.diff(points.station) <= CURBS.max_joined_gap)
-
-
-def _measured_length(points):
-    """m of curb along the road."""
-    points, goes_on = _measured(points)
-    return float(np.diff(points.station)[goes_on].sum())
 
 
 def _curb_at(points, goes_on, s):

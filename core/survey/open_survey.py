@@ -189,8 +189,10 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
         survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
-    # what the user says overrules what lies beside the trajectory
-    _widen_sigma(survey.frame, max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), left))
+    # what the user says overrules what lies beside the trajectory; what passes differ by is part of the same error
+    if across := max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), left):
+        known = survey.frame.pass_sigma
+        survey.frame.pass_sigma = {road: known.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
     if shared is not None:
         survey.keep(shared.ordered)
     return survey
@@ -229,12 +231,6 @@ def _lay_scanners_and_passes(survey, again, feet, progress):
     if again:
         adjust_passes(survey, progress.part(READING.read_progress, 1.0))
     return left
-
-
-def _widen_sigma(frame, across):
-    """Know the passes of a frame no better than to `across` m; what they differ by is part of the same error."""
-    if across:
-        frame.pass_sigma = {road: frame.pass_sigma.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
 
 
 def _metric_crs(files, trajectory, settings, progress):

@@ -106,6 +106,32 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
     return Survey([], frame, store, "", {p.number: SENSOR for p in frame.passes}, field, list(range(len(scanners))), True, True, above_road=12.0)
 
 
+def crossing_roads(up, halves=(HALF, HALF)):
+    """(Survey, edges) of two level roads of 60 m that cross, the one to the north `up` m above the one to the east, with edges at `halves`."""
+    rng = np.random.default_rng(3)
+    x, rows, parts, edges = np.arange(-30.0, 30.1, 0.25), [], [], Features("LineStringZ", ROAD_EDGES)
+    for number, (level, placed) in enumerate(((GROUND, lambda x, y: (EAST + x, NORTH + y)), (GROUND + up, lambda x, y: (EAST - y, NORTH + x)))):
+        time = 1000.0 * number + np.arange(len(x)) * 0.025
+        rows.append(np.stack([time, *placed(x, 0 * x), level + SENSOR + 0 * x]))
+        px, py = np.sort(rng.uniform(-30, 30, 40_000)), rng.uniform(-6, 6, 40_000)
+        parts.append((np.interp(px, x, time), *placed(px, py), level + surface(py) + rng.normal(0, 0.004, len(px))))
+        for side, d in (("left", halves[number]), ("right", -halves[number])):
+            edges.add(shapely.linestrings(np.stack([*placed(x, d + 0 * x), level + 0 * x], axis=1)), side=side, kind="main", part="bottom",
+                      road=number)
+    frame = build_frame(Trajectory(*np.concatenate(rows, axis=1)))
+    store = SectionStore(SURVEY_POINT, 20.0)
+    for number, (time, *places) in enumerate(parts):
+        local = frame.to_local(*places)
+        s, d = frame.road(number).locate(*local[:2])
+        seen = np.isfinite(s)
+        records = np.zeros(seen.sum(), SURVEY_POINT)
+        for name, values in zip("xyzsd", (*local, s, d)):
+            records[name] = to_units(values[seen])
+        records["time"], records["pass_number"] = time[seen], number
+        store.append(number, records)
+    return Survey([], frame, store, "", dict.fromkeys((0, 1), SENSOR), None, [0], True, True, above_road=12.0), edges
+
+
 def edges_of(length=60.0, half=HALF, north=False, radius=0.0):
     """ROAD_EDGES of the road."""
     return _lines(ROAD_EDGES, [(d, dict(side="left" if d > 0 else "right", status="measured", kind="main", part="bottom")) for d in (half, -half)],

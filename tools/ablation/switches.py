@@ -241,6 +241,8 @@ ROWS = (
         ("raised things", "paint.not_paint:raised_cells", none_of(1), "ends of islands (roundabout), tram stop"),
         ("averages of noisy scanners", "paint.extract:ScannerScatter.noisy_windows", gives(set()), "many-beam scanner (Karlsruhe)",
          "paint.noisy:noisy_paint_cells paint.noisy:CellAverages paint.extract:ScannerScatter"),
+        ("ground around a spot of photographs", "paint.extract:ScannerScatter.photographed_windows", gives(set()), "brightness from photographs",
+         "paint.photographs:bright_spots"),
         ("outliers", "outliers:remove_outliers", nth(0))),
     *_room("clusters", "markings",
         ("tracks of the scan linked", "objects.grouping:_across_tracks", gives(NO_ROWS), "sparse paint"),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 
 import numpy as np
+from scipy import ndimage
 
 from ...common.arrays import order_by
 from ...common.progress import Progress
@@ -76,8 +77,8 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
-    phase = Phase(paint_of_window, source, (settings, noisy, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
+    ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
+    phase = Phase(paint_of_window, source, (settings, ways, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
         paint.store.adopt(index, executor.folder)
@@ -101,10 +102,14 @@ class ScannerScatter:
 
     shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
         out, and are taken for not noisy
+    points : {(road, window): (scanners,) points of each scanner}
+    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
+        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two
     """
 
     shares: dict[int, float]
-    points: dict[WindowKey, np.ndarray]   # {(road, window): (scanners,) points of each scanner}
+    points: dict[WindowKey, np.ndarray]
+    differences: dict[int, float] = field(default_factory=dict)
 
     @property
     def noisy(self) -> list[int]:
@@ -112,8 +117,16 @@ class ScannerScatter:
 
     def noisy_windows(self, road: int) -> set[int]:
         """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
+        return self._windows_of(road, self.noisy)
+
+    def photographed_windows(self, road: int) -> set[int]:
+        """The windows of a road in which the brightness of most points is that of photographs."""
+        return self._windows_of(road, [scanner for scanner, ratio in self.differences.items() if ratio < ASPHALT.photographed])
+
+    def _windows_of(self, road, scanners):
+        """The windows of a road in which most points are of some scanners."""
         return {window for (of, window), count in self.points.items()
-                if of == road and 2 * sum(count[k] for k in self.noisy if k < len(count)) > count.sum()}
+                if of == road and 2 * sum(count[k] for k in scanners if k < len(count)) > count.sum()}
 
     def summary(self, length: float) -> str:
         """A sentence for a log; `length` is that of a window, metres."""
@@ -121,8 +134,12 @@ class ScannerScatter:
             return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
         listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
         text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
-        windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
+        windows, photographed = (sum(len(of(road)) for road in {road for road, _ in self.points})
+                                 for of in (self.noisy_windows, self.photographed_windows))
         filled = sum(bool(count.sum()) for count in self.points.values())
+        if photographed:
+            text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint "
+                     "is compared with the ground around each spot.")
         if not windows:
             return text + " Paint is searched for in the image."
         if windows == filled:
@@ -150,11 +167,12 @@ def scanner_scatter(road_points: RoadPoints) -> Work:
     missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
     if missed:
         squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
-    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
+    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts,
+                          _shares(squares, 3))
 
 
 def scatter_of_windows(road_points: RoadPoints,
-                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray] | None]]:
+                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...] | None]]:
     """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
 
     Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
@@ -166,13 +184,15 @@ def scatter_of_windows(road_points: RoadPoints,
     return result
 
 
-def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scanner, number of points and scatter as a share of asphalt's level, (squares,) each, of squares of 1 m seen by one scanner from one distance.
+def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
+    """Scanner, number of points, scatter as a share of asphalt's level and differences of neighbours as a share of the variance, (squares,) each,
+    of squares of 1 m seen by one scanner from one distance.
 
     Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
+    Differences are NaN where few points have a neighbour in their cell of 4 cm.
     """
     if not len(points):
-        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0)
+        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0), np.empty(0)
     points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
     value, scanner = points.intensity, points.scanner
     side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
@@ -189,13 +209,32 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndar
     starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
     median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
-    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit]
+    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, value, order, starts[lit], count[lit] // 2)
 
 
-def _shares(squares):
-    """{scanner: median scatter} of the results of `_scatter_in_squares` in several windows."""
+def _differences(points, value, order, starts, count):
+    """(squares,) mean squared difference of the values of points in one cell, by the variance of the square; NaN where few share a cell.
+
+    value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
+    """
+    square = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
+    keys = np.stack([square, *(points.records[key][order[place]] // CELL_UNITS for key in "sd")])
+    by_cell = np.lexsort(keys[::-1])
+    of = np.where((np.diff(keys[:, by_cell]) == 0).all(axis=0), square[1:], -1)
+    few = np.bincount(of + 1, minlength=len(count) + 1)[1:] < ASPHALT.min_neighbours
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = (ndimage.mean(np.diff(value[place][by_cell]) ** 2, of, range(len(count)))
+                 / ndimage.variance(value[place], square, range(len(count))))
+    return np.where(few, np.nan, ratio)
+
+
+def _shares(squares, place=2):
+    """{scanner: median} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
     if not squares:
         return {}
-    scanner, count, scatter = (np.concatenate(parts) for parts in zip(*squares))
+    scanner, count, scatter = (np.concatenate([entry[k] for entry in squares]) for k in (0, 1, place))
+    known = np.isfinite(scatter)
+    scanner, count, scatter = scanner[known], count[known], scatter[known]
     points = np.bincount(scanner, count)
     return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}

@@ -30,6 +30,7 @@ from ..weights import ASPHALT, SHAPES
 from .asphalt_level import asphalt_bins, asphalt_profile, bin_edges, dark_cells, flatten, threshold_profile
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
 from .not_paint import RimBands, clear_pieces, edge_distance, raised_cells, rim_distance, track_spacing
+from .photographs import bright_spots
 from .settings import MarkingSettings
 
 THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
@@ -83,15 +84,16 @@ class PaintSource:
         return state_about(self.image, self.frame, road, *(row * CELL_UNITS * COORDINATE_SCALE for row in rows))
 
 
-def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, noisy: dict[int, list[int]],
+def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, ways: dict[int, tuple[list[int], list[int]]],
                     masked: bool) -> tuple[StoreIndex, np.ndarray, np.ndarray]:
     """The phase that extracts paint; returns where its points lie in a part of the store of paint, and x, y of the mask.
 
-    `item` : number of a road and of a window; `noisy` : {road: windows with noisy points}, in which paint is searched for in averages;
-    `masked` : whether the mask's pixels are asked for.
+    `item` : number of a road and of a window; `ways` : {road: windows with noisy points, in which paint is searched for in averages, and those with
+    brightness of photographs}; `masked` : whether the mask's pixels are asked for.
     """
     road, window = item
-    records, x, y = _Window(source, road, window).extract(settings, window in noisy.get(road, ()), masked)
+    noisy, photographed = (window in some for some in ways.get(road, ((), ())))
+    records, x, y = _Window(source, road, window).extract(settings, noisy, photographed, masked)
     with source.paint.part() as part:
         part.append(road, records)
     return part.index(), x, y
@@ -108,7 +110,7 @@ class _Window:
     def _points(self, first, last):
         return points_of_rows(self.source.road_points, self.road, first, last)
 
-    def extract(self, settings: MarkingSettings, noisy: bool, masked: bool) -> Paint:
+    def extract(self, settings: MarkingSettings, noisy: bool, photographed: bool, masked: bool) -> Paint:
         """Paint of the window itself."""
         nothing = join_columns([], self.source.road_points.store.dtype), np.empty(0), np.empty(0)
         if not len(self._points(self.begin, self.end)):
@@ -118,19 +120,30 @@ class _Window:
         cells = RoadCells.of(parts, self.first, self.last)
         if cells is None:
             return nothing
-        mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings)
+        mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings, photographed)
         return self._paint_in([part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end], cells, mask, least, masked)
 
-    def _from_image(self, parts, cells, settings):
+    def _from_image(self, parts, cells, settings, photographed):
         """Cells of paint by thresholds on the image, and the brightness that points on them have at least."""
-        grid, offsets = cells.grid, cells.grid.offsets()
-        brightness = grid.read(self.source.image, self.source.frame, self.road)
-        scanned, from_rim, rows = np.isfinite(brightness), rim_distance(cells.occupied), slice(WINDOW_HALO, WINDOW_HALO + THRESHOLD_WINDOW)
+        brightness = cells.grid.read(self.source.image, self.source.frame, self.road)
+        scanned, from_rim = np.isfinite(brightness), rim_distance(cells.occupied)
+        if not scanned[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW].any():
+            return np.zeros(cells.grid.shape, bool), None
+        rims = [RimBands.of(distance, scanned) for distance in (from_rim, edge_distance(cells.half_width, cells.grid.offsets()))]
+        with np.errstate(invalid="ignore"):
+            if photographed:
+                z, bright, above, least = bright_spots(brightness, rims, settings)
+            else:
+                z, bright, above, least = self._brighter_than_strips(parts, cells.grid.offsets(), brightness, from_rim, rims, settings)
+            mask = clear_pieces(z, bright, scanned, settings, above, from_rim if photographed else None)
+        return mask & ~raised_cells([self._heights(part, cells.grid) for part in parts], mask), least
+
+    def _brighter_than_strips(self, parts, offsets, brightness, from_rim, rims, settings):
+        """As `bright_spots`, by the asphalt of strips along the road."""
+        scanned, rows = np.isfinite(brightness), slice(WINDOW_HALO, WINDOW_HALO + THRESHOLD_WINDOW)
         interior = scanned[rows] & (from_rim[rows] > np.float32(ASPHALT.rim_width))
         if np.count_nonzero(interior) < ASPHALT.min_bin_cells:
             interior = scanned[rows]
-        if not interior.any():
-            return np.zeros(grid.shape, bool), None
         seen, usual = scanned, np.inf
         if self.source.road_points.has_corrected:   # without a correction asphalt itself is darker far from the vehicle
             usual = float(median(brightness[rows][interior]))
@@ -141,14 +154,11 @@ class _Window:
         edges = bin_edges(np.concatenate([part.offsets for part in parts]), offsets[columns[0]], offsets[columns[-1]])
         bins = asphalt_bins(brightness[rows], interior, offsets, edges, usual)
         asphalt, spread = asphalt_profile(bins, offsets)
-        rims = [RimBands.of(distance, scanned) for distance in (from_rim, edge_distance(cells.half_width, offsets))]
         z, gutter = flatten(brightness, asphalt, spread, rims)
         scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings)
-        with np.errstate(invalid="ignore"):
-            mask = clear_pieces(z / scale, (z > threshold * scale) & ~gutter, scanned, settings, (brightness - asphalt) / (spread * scale))
-        mask &= ~raised_cells([self._heights(part, grid) for part in parts], mask)
         # the background that was subtracted from the cell is subtracted from the point as well
-        return mask, (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        return z / scale, (z > threshold * scale) & ~gutter, (brightness - asphalt) / (spread * scale), least
 
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
         """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""

@@ -205,7 +205,8 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    noisy = _is_noisy(raster, clear)
+    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
+    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)
@@ -234,12 +235,6 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), RETURN.min_island_width)]
     # averaging leaves the errors of single beams and the drift of positions
     return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), raster.noise)
-
-
-def _is_noisy(raster, clear):
-    """Are heights so noisy that cells are averaged, and points so dense that they can be? `clear` : m, the least height of a clear curb."""
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    return dense and raster.noise > RETURN.noisy_raster_share * clear
 
 
 def _is_wanted(x, y, line, limits, known, start, end, before_curbs=False):

@@ -241,7 +241,10 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     extended = {id(curb): curb for curb in curbs}
     for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections]))):
         # inside a tight bend a place may have no station
-        line_steps = _until_met(line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])], met)
+        line_steps = line_steps[np.isfinite(line.locate(line_steps.x, line_steps.y)[0])]
+        near = met.within(line_steps.x, line_steps.y, RETURN.meeting_curb_distance)
+        near[:int(RETURN.leaving_length / RETURN.led_step)] = False
+        line_steps = line_steps[:int(np.argmax(near))] if near.any() else line_steps
         k, at_head = ends.line[number], ends.uphill[number] < 0
         if len(line_steps) < RETURN.min_return_steps:
             continue
@@ -255,13 +258,6 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
             curb = free[k - len(runs)]
             extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(line_steps, s, d, curb.side, curb.kind), at_head)
     return list(extended.values()) + continuations
-
-
-def _until_met(curb, met):
-    """A curb as far as another one."""
-    near = met.within(curb.x, curb.y, RETURN.meeting_curb_distance)
-    near[:int(RETURN.leaving_length / RETURN.led_step)] = False
-    return curb[:int(np.argmax(near))] if near.any() else curb
 
 
 def _joined(curb, more, before):

@@ -166,7 +166,9 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
     pieces : measured and bridged edges of all roads
     number : of the first new line
     """
-    lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
+    # the sidewalk lies right of lines: main edges run along the road, all others have it there already
+    lines = [(piece, piece.vertices[::-1] if piece.kind == "main" and piece.side == "left" else piece.vertices)
+             for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
     tails, heads = ([_end(piece, line[::step]) for piece, line in lines] for step in (1, -1))
     places = np.array([end.place[:2] for end in tails + heads]).reshape(-1, 2)
     free = cKDTree(places).query_ball_point(places, EDGE.meeting_distance, return_length=True) == 1
@@ -185,12 +187,6 @@ def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) 
             used |= {("tail", i), ("head", j)}
             arcs.append(_arc(tails[i], heads[j], frame, number + len(arcs)))
     return arcs
-
-
-def _uphill_right(piece):
-    """(V, 3) the vertices of a piece, in the direction that has the sidewalk on its right."""
-    # main edges run along the road, all others have it there already
-    return piece.vertices[::-1] if piece.kind == "main" and piece.side == "left" else piece.vertices
 
 
 def _end(piece, line):

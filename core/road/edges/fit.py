@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import splev, splprep, splrep
@@ -13,6 +14,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.setting import Limited, setting
 from ...curves.robust import MAD_TO_SIGMA
+from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
 from ..common.tracking import IN_LINE_TURN, is_lowered, line_across, without_outliers
@@ -34,10 +36,11 @@ class EdgeSettings(Limited):
 
 
 def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                   progress: Progress = Progress()) -> RoadEdges:
+                   progress: Progress = Progress(), executor: Executor = THREADS) -> RoadEdges:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
     curb_points : CurbPoints (those of part `top` are not used)
+    executor : who fits each side
 
     Returns RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
     edge share their end vertices and `chain`.
@@ -47,14 +50,16 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & of_edges]
     table, returns = point_table(points, frame), curb_return_lines(curb_points, frame)
     lines, of_table = 0, np.ascontiguousarray(table["road"])
+    items = [(road.number, side, rows[rows["side"] == side]) for road in frame.roads
+             for rows in (table[stretch_of(of_table, road.number, road.number)],) for side in ("left", "right")]
+    phase = Phase(_edges_of_side, NoSource(), (frame, settings.max_gap), lambda item: f"road {item[0]}, {item[1]} side")
+    fitted = iter(list(executor.run(phase, items)))
     for road in frame.roads:
         of_road: list[EdgePiece] = []
-        road_points = table[stretch_of(of_table, road.number, road.number)]
         for side in ("left", "right"):
-            drawn = []
-            for piece in _pieces(road_points[road_points["side"] == side], settings.max_gap):
-                drawn.append(_draw(of_road, frame, road.number, side, piece, lines))
-                lines += 1
+            drawn = [replace(piece, chain=piece.chain + lines) for piece in next(fitted)]
+            of_road += drawn
+            lines = drawn[-1].chain + 1 if drawn else lines
             if settings.fallback_width:
                 lines = _draw_fallback(of_road, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_curb_returns(of_road, road.number, returns.get(road.number, []), lines, frame)
@@ -187,7 +192,7 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, EDGE.min_point_sigma)
 
 
-def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, changes: np.ndarray) -> Iterator[tuple[int, np.ndarray, dict[str, float]]]:
+def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, changes: np.ndarray) -> Iterator[tuple[int, np.ndarray, dict[str, Any]]]:
     """The stretches of a line, each of one kind.
 
     points, t, residual : as of EdgeCurve, N points
@@ -204,20 +209,21 @@ def stretches_of(points: np.ndarray, t: np.ndarray, residual: np.ndarray, change
                                                            rmse=float(np.sqrt(np.mean(residual[i:j + 1] ** 2))))
 
 
-def _draw(pieces, frame, road, side, piece, number):
-    """Add the pieces of one edge; returns its (start, end) station."""
-    points, bridged, lowered = piece
-    measured = points["status"] == "measured"
-    with_bridges, places, longest = _with_bridges(points, np.diff(points["s"]) > CURBS.max_joined_gap, frame, road)
-    curve = EdgeCurve(with_bridges, longest, places[measured])
-    t, residual = curve.t[places], curve.residual[places]
-    for i, along, known in stretches_of(points, t, residual, np.diff(bridged) | np.diff(lowered)):
-        passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
-        sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
-        # a bridge is one guess
-        pieces.append(EdgePiece(curve.at(along), road, side, "bridged" if bridged[i] else "measured", number, **known,
-                               what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
-    return float(points["s"][0]), float(points["s"][-1])
+def _edges_of_side(source: NoSource, item: tuple[int, str, np.ndarray], frame: RoadFrame, max_gap: float) -> list[EdgePiece]:
+    """The phase that fits the edges of one side, numbered from 0; item : number of the road, side, and its rows of `point_table`."""
+    (road, side, rows), pieces = item, []
+    for number, (points, bridged, lowered) in enumerate(_pieces(rows, max_gap)):
+        measured = points["status"] == "measured"
+        with_bridges, places, longest = _with_bridges(points, np.diff(points["s"]) > CURBS.max_joined_gap, frame, road)
+        curve = EdgeCurve(with_bridges, longest, places[measured])
+        t, residual = curve.t[places], curve.residual[places]
+        for i, along, known in stretches_of(points, t, residual, np.diff(bridged) | np.diff(lowered)):
+            passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
+            sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
+            # a bridge is one guess
+            pieces.append(EdgePiece(curve.at(along), road, side, "bridged" if bridged[i] else "measured", number, **known,
+                                    what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))
+    return pieces
 
 
 def _draw_fallback(pieces, frame, road, side, drawn, width, number):
@@ -225,7 +231,7 @@ def _draw_fallback(pieces, frame, road, side, drawn, width, number):
     passes = frame.passes_of(road.number)
     start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
     free, station = [], max(start, 0.0)
-    for a, b in sorted(drawn):
+    for a, b in sorted((piece.station, piece.end) for piece in drawn):
         free.append((station, a))
         station = max(station, b)
     free.append((station, end))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -108,8 +109,9 @@ class RoadEdges(LayerRows):
             return self
         added = joined_pieces(pieces, frame, self.crs)
         added = replace(added, chain=added.chain + max(self.chain.max(initial=-1), -1) + 1)
-        joined = replace(self, **{name: _joined(getattr(self, name), getattr(added, name)) for name in self.names()})
-        return replace(joined, edge=np.arange(len(joined)))
+        columns: dict[str, Any] = {name: np.append(getattr(self, name), getattr(added, name)) for name in self.names() if name != "course"}
+        columns.update(edge=np.arange(len(self) + len(added)), course=self.course.and_lines(added.course))
+        return replace(self, **columns)
 
     def on_map(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
@@ -158,11 +160,6 @@ def _column(pieces, name):
     """(E,) values of an attribute of pieces, as the layer holds them."""
     values, decimals = [getattr(piece, name) for piece in pieces], EDGE_DECIMALS.get(name)
     return RoadEdges.array_of(name, values if decimals is None else [round(value, decimals) for value in values])
-
-
-def _joined(some, more):
-    """Arrays or lines, one after the other."""
-    return some.and_lines(more) if isinstance(some, FrameLines) else np.concatenate([some, more])
 
 
 def _nearest_passes(course, station, frame):

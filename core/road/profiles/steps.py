@@ -33,7 +33,9 @@ def _rising_cells(lines, min_height, max_height):
     column = indices - row * low.shape[1]
     offset = column * spacing
     own_low, own_high = low.ravel().take(indices), high.ravel().take(indices)
-    top = _max_ahead(high, span).ravel().take(indices) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
+    # the highest of this and the following cells
+    highest = maximum_filter1d(np.fmax(high, -np.inf), span + 1, axis=1, mode="constant", cval=-np.inf, origin=-((span + 1) // 2))
+    top = highest.ravel().take(indices) - (TOP_QUANTILE_SIGMAS * lines.noise).take(row)
     # the cell before must still be road: the last occupied one within the window
     before = np.full(len(indices), np.nan)
     near = (indices[1:] - indices[:-1] <= span) & (row[1:] == row[:-1])
@@ -68,11 +70,6 @@ def _stays_up(low, base, slope, rows, columns, min_height, spacing):
         raised = rise > 0.4 * min_height
     count = raised.sum(1)
     return (count < PROFILE.min_raised_cells) | (np.where(raised, rise, 0.0).sum(1) >= PROFILE.min_raised_height_share * min_height * count)
-
-
-def _max_ahead(values, span):
-    """Largest value in this and the following cells, NaN taken as none."""
-    return maximum_filter1d(np.fmax(values, -np.inf), span + 1, axis=1, mode="constant", cval=-np.inf, origin=-((span + 1) // 2))
 
 
 # Steps where the scanner's noise hides a curb in a single profile: measured in the average of several profiles.
@@ -140,7 +137,8 @@ def _steps_of(lines, best, min_height, max_height):
             & (best["rise"] >= CURBS.min_steep_share * best["height"]) & (best["scatter"] <= CURBS.max_averaged_scatter)
             & (np.abs(best["before"]) <= CURBS.max_road_slope) & (np.abs(best["behind"]) <= CURBS.max_road_slope))
     score = np.where(good, best["rise"], -np.inf)
-    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(PROFILE.min_step_spacing / lines.spacing)))))
+    about = 2 * int(round(PROFILE.min_step_spacing / lines.spacing)) + 1
+    rows, cells = np.nonzero(good & (score >= maximum_filter1d(score, about, axis=1, mode="constant", cval=-np.inf)))
     pick = {name: values[rows, cells] for name, values in best.items()}
     count = np.diff(lines.starts).reshape(lines.shape)
     reach = int(round((CURBS.blurred_face_half_width + CURBS.road_fit_length) / lines.spacing))
@@ -238,8 +236,3 @@ def _overlap(size, by):
     """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
     by = max(-size, min(by, size))
     return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
-
-
-def _largest_near(values, span):
-    """Largest value within `span` cells either side."""
-    return maximum_filter1d(values, 2 * span + 1, axis=1, mode="constant", cval=-np.inf)

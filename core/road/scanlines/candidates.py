@@ -97,7 +97,9 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
     best = rising[best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]
     candidates = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
-    candidates = candidates[_stays_up(low, candidates) & _measured_itself(measured, candidates, span)]
+    # filled gaps alone would extend a curb beyond its end
+    about = np.clip(cell[:, None] + np.arange(-span, span + 1), 0, low.shape[1] - 1)
+    candidates = candidates[_stays_up(low, candidates) & np.isfinite(measured[row[:, None], about]).any(1)]
     return candidates[_persistent(candidates)]
 
 
@@ -131,12 +133,6 @@ def gap_fill_rows(interval: float) -> int:
     interval : m between section planes
     """
     return max(int(round(SCANLINE.gap_fill_reach / interval)), 1)
-
-
-def _measured_itself(low, candidates, span):
-    """Whether a scanline has heights of its own about the rise; filled gaps alone would extend a curb beyond its end."""
-    cells = np.clip(candidates.cell[:, None] + np.arange(-span, span + 1), 0, low.shape[1] - 1)
-    return np.isfinite(low[candidates.row[:, None], cells]).any(1)
 
 
 def _stays_up(low, candidates):

@@ -91,24 +91,18 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, item: Section,
         heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
         grid = height_grid(lines, heights, rows, interval, min(CURBS.max_curb_offset, source.corridor), settings.clipping_height)
         closed = grid.closed(gap_fill_rows(interval))
-        tall = _tall(lines, heights, interval)
+        tall = np.flatnonzero(heights > CURBS.min_occluder_height)   # vertices of objects that can hide a curb
+        tall_stations = lines.station[np.searchsorted(lines.first, tall, side="right") - 1] + 0.5 * interval
         candidates = {}
         for side, sign in SIDE_SIGNS.items():
             origin = np.floor(nearest[side].min())
             outward = grid.outward(sign, origin)
-            occlusion[side].add_points(sign * tall[0], tall[1], tall[2], (begin, end), outward.part(margin, margin + end - begin))
+            occlusion[side].add_points(sign * lines.d[tall], tall_stations, heights[tall], (begin, end), outward.part(margin, margin + end - begin))
             of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
             candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
         for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
             corners_by_side[side].append(corners)
     return {side: merged_corners(parts) for side, parts in corners_by_side.items() if parts}, occlusion
-
-
-def _tall(lines, heights, interval):
-    """(d, s, h) of the vertices of objects that can hide a curb."""
-    vertex = np.flatnonzero(heights > CURBS.min_occluder_height)
-    line = np.searchsorted(lines.first, vertex, side="right") - 1
-    return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
 
 
 def _corners(lines, heights, rows, interval, candidates, settings):

@@ -29,7 +29,7 @@ from .ground_change import follow_road, smooth_road
 from .ground_grid import GroundCells, MeasuredGround, windows_of
 from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
 from .road_points import surface_about, surface_points
-from .road_surface import SurfaceOutlines, outlines
+from .road_surface import SurfaceOutlines, outlines, without_overlaps
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,8 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     Between road edges, all points at the height of the road belong to the surface. The height is followed from the track of the vehicle outward;
     parked cars, people and islands are not at this height. Where a side has no edge, the surface ends where the ground stops being a road (a step,
     another slope, rougher or differently bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
-    straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
+    straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned. Where two roads share ground, one of
+    them draws it.
 
     ground : MeasuredGround that an earlier stage kept, or None
     counted : whether the density of points is asked for
@@ -81,7 +82,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
                                   "of the road. Check that the trajectory belongs to the point cloud.")
     if counted:
         road_points.density = tuple(cube_density(part) for part in zip(*cubes))
-    surface = SurfaceOutlines.of_rows(stretches, survey.crs, said_of_thin(margins.unknown))
+    surface = SurfaceOutlines.of_rows(without_overlaps(survey.frame, stretches), survey.crs, said_of_thin(margins.unknown))
     if surface.thin:
         progress.warn(surface.thin)
     progress.info(f"Road surface: {len(road_points):,} points, {surface.area.sum():.0f} m², "
@@ -132,7 +133,9 @@ def _carriageway(survey, road, settings, ground, windows, profiled, stations, me
             offset = np.where(np.isnan(offset), grown[side].offset - sign * SURFACE.grown_inset, offset)
         limits[side] = offset, bounded
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
-    has_road = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
+    near_track = followed.ground[:, np.abs(cells.offsets) < SURFACE.track_reach].any(axis=1)
+    # rows within 2.5 m of one that shows ground
+    has_road = (np.convolve(near_track, np.ones(11), "same") > 0) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
     tolerance = float(np.clip(SURFACE.tolerance_floor + SURFACE.tolerance_sigmas * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(has_road, limits["right"][0], np.nan),
                        np.where(has_road, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
@@ -150,12 +153,6 @@ def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
                                sign * cells.offsets[outward], sign * track + max_width, driven[:, outward])
         result[side] = sign * opened, bounded
     return result
-
-
-def _has_road(ground, offsets):
-    """Rows that show ground near the reference line, or lie within 2.5 m of such a row."""
-    measured = ground[:, np.abs(offsets) < SURFACE.track_reach].any(axis=1)
-    return np.convolve(measured, np.ones(11), "same") > 0
 
 
 def _take_points(survey, carriageways, road_points, counted, cubes, progress):
@@ -254,7 +251,8 @@ def opened_limits(limit: np.ndarray, closed: np.ndarray, height: np.ndarray, gro
         if deep.sum(axis=0).max() * SURFACE.row_length < SURFACE.min_street_width \
                 or _level_flanks(between, first, height, limit, offsets) > SURFACE.max_level_flanks * (end - first) * SURFACE.row_length:
             continue
-        reach = median_filter(_outermost(between & ground[rows], offsets), SURFACE.smoothed_rows, mode="nearest")
+        outermost = np.where(between & ground[rows], offsets + SURFACE.column_width / 2, -np.inf).max(axis=1)
+        reach = median_filter(outermost, SURFACE.smoothed_rows, mode="nearest")
         result[rows] = np.fmax(limit[rows], np.minimum(reach, farthest[rows]))
     return result
 
@@ -295,11 +293,6 @@ def _level_flanks(street, first, height, limit, offsets):
     differences = differences[np.isfinite(differences)]
     share = float((differences < SURFACE.min_flank_step).mean()) if len(differences) else 0.0
     return share * sum(map(len, level)) * SURFACE.column_width if share <= 0.5 else np.inf
-
-
-def _outermost(cells, offsets):
-    """(N,) m, the outer end of the outermost cell of each row that is on; minus infinity where none is."""
-    return np.where(cells, offsets + SURFACE.column_width / 2, -np.inf).max(axis=1)
 
 
 # Where no curb was found and the points lie too far apart to say that there is none.

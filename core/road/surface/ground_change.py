@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import correlate1d, median_filter, uniform_filter1d
+from scipy.ndimage import gaussian_filter1d, median_filter, uniform_filter1d
 
 from ...common.parallel import by_rows, check_cancelled
 from ..weights import SURFACE
@@ -264,7 +264,7 @@ def _walk(cells, base, columns, start, noise, height, ground):
     """Follow both sides outward from the heights `base` under the vehicle, (K, 2) columns; fills `height` and `ground` in place."""
     tilt = np.stack([start, -start])
     z, skipped = np.zeros_like(tilt), np.zeros_like(tilt)
-    kernel = _bell(SURFACE.row_smoothing_sigma / SURFACE.row_length)
+    sigma = SURFACE.row_smoothing_sigma / SURFACE.row_length
     step = max(SURFACE.cells_between_questions // tilt.size, 1)
     # one pair of columns after the other: of the whole road nothing is there but what comes in and goes out
     for k, pair in enumerate(columns):
@@ -280,23 +280,16 @@ def _walk(cells, base, columns, start, noise, height, ground):
         # cells near the tolerance have little weight: the surface must not climb a low curb
         weight = np.where(near, (1.0 - (off / tolerance) ** 2) ** 2, 0.0) * np.minimum(count, 20.0)
         # weighted mean over neighbouring rows, which fill the gaps of a row
-        total, around = correlate1d(np.stack([weight, off * weight]), kernel, mode="nearest")
+        total, around = gaussian_filter1d(np.stack([weight, off * weight]), sigma, mode="nearest")
         around /= np.maximum(total, 1e-9)
         certainty = np.minimum(total / 3.0, 1.0)
         # behind a gap the measured height replaces the prediction
         z = predicted + np.where(skipped > 0.5, 1.0, SURFACE.height_gain) * certainty * around
         tilt = np.clip(tilt + SURFACE.tilt_gain * certainty * around / SURFACE.column_width, -SURFACE.max_cross_slope, SURFACE.max_cross_slope)
-        tilt = correlate1d(tilt, kernel, mode="nearest")
+        tilt = gaussian_filter1d(tilt, sigma, mode="nearest")
         skipped = np.where(certainty > 0.5, 0.0, skipped + SURFACE.column_width)
         height[:, pair] = (z + base).T
         ground[:, pair] = (np.abs(measured - z) < tolerance).T
-
-
-def _bell(sigma):
-    """Weights of a normal distribution up to four sigma."""
-    reach = int(4.0 * sigma + 0.5)
-    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
-    return weights / weights.sum()
 
 
 def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:

@@ -154,13 +154,10 @@ def _go_on(offset, gap, possible, places, last, run, max_gap):
     near = 0 < length <= EDGE.in_line_gap_factor * max_gap
     if not near or abs(offset[gap.stop] - offset[gap.start - 1]) > EDGE.max_edge_jump + SURFACE.max_bridged_skew * length:
         return False
-    return possible[gap].mean() >= EDGE.min_hidden_share and (length <= max_gap or _in_line(places[:, slice(*last)], places[:, slice(*run)]))
-
-
-def _in_line(before, after):
-    """Whether the (2, N) and (2, M) places before and after a gap lie on one even bend."""
-    long = min(before.shape[1], after.shape[1]) * SURFACE.row_length >= SURFACE.agreeing_length
-    return long and GapLine(before, after, max_degree=2).miss <= SURFACE.max_line_miss
+    # across a long gap both runs lie on one even bend
+    long = min(last[1] - last[0], run[1] - run[0]) * SURFACE.row_length >= SURFACE.agreeing_length
+    return possible[gap].mean() >= EDGE.min_hidden_share and (length <= max_gap or long and GapLine(
+        places[:, slice(*last)], places[:, slice(*run)], max_degree=2).miss <= SURFACE.max_line_miss)
 
 
 def _drawn(frame, road, side, carriageway, grown, runs):

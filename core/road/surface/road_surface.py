@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ...common.features import ROAD_SURFACE
 from ...common.layer_rows import LayerRows, column
+from ...common.parallel import check_cancelled
 from ...survey.frame.placement import COORDINATE_DECIMALS
 from ...survey.frame.road_frame import RoadFrame
+from ...survey.weights import FRAME
 from ..weights import SURFACE
 from .pavement_edge import Carriageway
 
@@ -68,8 +71,8 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
             continue
         # the next stretch begins with the last vertices of this one
         rows = np.arange(a, b + 1 if b < len(kind) and kind[b] else b)
-        polygon = None if len(rows) < 2 else _polygon(frame, road, carriageway, rows)
-        if polygon is None or polygon.is_empty:
+        polygon = max(_polygons(_outline(frame, road, carriageway, rows)), key=shapely.area, default=None) if len(rows) > 1 else None
+        if polygon is None:
             continue
         local = shapely.transform(polygon, lambda places: places - frame.origin, include_z=True)
         station, end = (round(float(cells.stations[row]), 3) for row in rows[[0, -1]])
@@ -78,14 +81,59 @@ def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_r
     return result
 
 
-def _polygon(frame, road, carriageway, rows):
-    """The outline of some rows in map coordinates, the largest part of it where it crosses itself; None where nothing is left."""
+def without_overlaps(frame: RoadFrame, stretches: Sequence[tuple]) -> list[tuple]:
+    """The stretches of all roads, as `outlines` gives them, where each place of the ground is in one of them.
+
+    What two roads share on one level is of the stretch with edges on both sides, else of the road that was driven nearer. A stretch may fall into
+    parts; its points divide as its area does. What is narrower than SURFACE.min_surface_width is left out.
+    """
+    whole = np.array([row[-1] for row in stretches], object)
+    rest = whole.copy()
+    for i, j in sorted(zip(*shapely.STRtree(whole).query(whole, predicate="intersects").tolist())):
+        check_cancelled()
+        if i >= j or stretches[i][0] == stretches[j][0]:
+            continue
+        for part in _polygons(shapely.intersection(rest[i], rest[j])):
+            (height, *claim), (other_height, *other_claim) = _claim(frame, stretches[i], part), _claim(frame, stretches[j], part)
+            if abs(height - other_height) < FRAME.level_separation:
+                loser = i if claim > other_claim else j
+                rest[loser] = shapely.difference(rest[loser], part)
+    return [row for stretch, left in zip(stretches, rest) for row in _parts(frame, stretch, left)]
+
+
+def _claim(frame, stretch, part):
+    """Height of the track beside a part of a stretch, m, and what puts the stretch behind another one: whether it is grown, m to its drive."""
+    (s,), (d,) = frame.road(stretch[0]).locate(*shapely.get_coordinates(part.representative_point()).T)
+    return frame.track_height(stretch[0], np.array([s]))[0], stretch[1] == "grown", abs(d)
+
+
+def _parts(frame, stretch, left):
+    """A row for each part that is left of a stretch."""
+    road, status, start, end, area, points, whole = stretch
+    if left is whole:
+        return [stretch]
+    places, half = shapely.get_coordinates(left, include_z=True), SURFACE.min_surface_width / 2
+    vertices, result = cKDTree(places[:, :2]), []
+    wide = shapely.buffer(shapely.buffer(left, -half), 2 * half)
+    # on the grid of the layer, so that its rounding leaves the parts valid
+    for part in _polygons(shapely.intersection(left, wide, grid_size=10.0 ** -COORDINATE_DECIMALS)):
+        if shapely.buffer(part, -half).is_empty:
+            continue
+        part = shapely.transform(part, lambda xyz: np.c_[xyz[:, :2], places[vertices.query(xyz[:, :2])[1], 2]], include_z=True)
+        s, _ = frame.road(road).locate(*shapely.get_coordinates(part).T)
+        first, last = np.round([np.fmax(np.fmin.reduce(s), start), np.fmin(np.fmax.reduce(s), end)], 3).tolist()
+        result.append((road, status, first, last, round(part.area, 3), round(points * part.area / area), part))
+    return result
+
+
+def _outline(frame, road, carriageway, rows):
+    """The outline of some rows in map coordinates, in parts where it crosses itself."""
     cells, sides = carriageway.cells, []
     for offset in (carriageway.left[rows], carriageway.right[rows]):
         column = np.clip(np.floor(offset / SURFACE.column_width).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
         sides.append(np.c_[frame.to_map(road, cells.stations[rows], offset, carriageway.height[rows, column].astype(float))])
     polygon = shapely.Polygon(np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS))
-    return polygon if polygon.is_valid else _largest(shapely.make_valid(polygon))
+    return polygon if polygon.is_valid else shapely.make_valid(polygon)
 
 
 def _as_far_as_measured(there, points):
@@ -107,7 +155,6 @@ def _without_short_runs(mask, shortest):
     return mask
 
 
-def _largest(geometry):
-    """The largest polygon of a geometry, or None."""
-    parts = [part for part in getattr(geometry, "geoms", [geometry]) if part.geom_type == "Polygon"]
-    return max(parts, key=lambda part: part.area) if parts else None
+def _polygons(geometry):
+    """The polygons that a geometry consists of."""
+    return [part for part in shapely.get_parts(shapely.get_parts(geometry)) if part.area]

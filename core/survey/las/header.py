@@ -7,6 +7,7 @@ import os
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product, takewhile
 from typing import BinaryIO
 
@@ -160,6 +161,7 @@ def _records(file, position, count, head_size, size):
         position += head_size + record.length
 
 
+@cache
 def _base_size(point_format: int) -> int | None:
     """Bytes of a point without extra bytes; None for a format that laspy does not know."""
     from laspy import PointFormat, supported_point_formats

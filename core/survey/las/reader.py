@@ -376,6 +376,7 @@ def _coded(code):
     return _crs(pyproj.CRS.from_epsg, code if code in EPSG_CODES else None)
 
 
+@lru_cache(maxsize=256)
 def _crs(read, given):
     """The CRS that a reader of pyproj makes of what is given; None for None, or where it is not understood."""
     try:

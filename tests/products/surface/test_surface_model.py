@@ -7,18 +7,13 @@ import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import ROAD_EDGES, Features
-from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.core.survey.open_survey import Survey
-from lanewright.core.survey.store.records import SURVEY_POINT, to_units
-from lanewright.core.survey.store.section_store import SectionStore
-from lanewright.core.survey.trajectory.trajectory import Trajectory
 from lanewright.products.cad import landxml_text, surface_lines, write_dxf
 from lanewright.products.export.xml_tree import read_xml
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.surface.model import SurfaceSettings, make_surface_model, surface_to_features, write_heights
 from lanewright.products.surface.triangulation import Triangulation
 from map_files import written
-from measured_streets import EAST, GROUND, HALF, NORTH, SENSOR, Drive, edges_of, lanes_of, measured_road, surface
+from measured_streets import EAST, GROUND, HALF, NORTH, Drive, crossing_roads, edges_of, lanes_of, measured_road, surface
 
 gdal = pytest.importorskip("osgeo.gdal")
 GRADE = 0.03
@@ -161,31 +156,6 @@ def test_a_road_with_an_edge_on_one_side_alone_is_refused_by_saying_so():
 def test_a_road_of_two_metres_is_too_short_for_a_surface():
     with pytest.raises(RoadExtractionError, match="No ground was seen"):
         model_of(length=2.0, edges=edges_of(2.0))
-
-
-def crossing_roads(up, halves=(HALF, HALF)):
-    """(Survey, edges) of two level roads of 60 m that cross, the one to the north `up` m above the one to the east, with edges at `halves`."""
-    rng = np.random.default_rng(3)
-    x, rows, parts, edges = np.arange(-30.0, 30.1, 0.25), [], [], Features("LineStringZ", ROAD_EDGES)
-    for number, (level, placed) in enumerate(((GROUND, lambda x, y: (EAST + x, NORTH + y)), (GROUND + up, lambda x, y: (EAST - y, NORTH + x)))):
-        time = 1000.0 * number + np.arange(len(x)) * 0.025
-        rows.append(np.stack([time, *placed(x, 0 * x), level + SENSOR + 0 * x]))
-        px, py = np.sort(rng.uniform(-30, 30, 40_000)), rng.uniform(-6, 6, 40_000)
-        parts.append((np.interp(px, x, time), *placed(px, py), level + surface(py) + rng.normal(0, 0.004, len(px))))
-        for d in (halves[number], -halves[number]):
-            edges.add(shapely.linestrings(np.stack([*placed(x, d + 0 * x), level + 0 * x], axis=1)), kind="main", part="bottom", road=number)
-    frame = build_frame(Trajectory(*np.concatenate(rows, axis=1)))
-    store = SectionStore(SURVEY_POINT, 20.0)
-    for number, (time, *places) in enumerate(parts):
-        local = frame.to_local(*places)
-        s, d = frame.road(number).locate(*local[:2])
-        seen = np.isfinite(s)
-        records = np.zeros(seen.sum(), SURVEY_POINT)
-        for name, values in zip("xyzsd", (*local, s, d)):
-            records[name] = to_units(values[seen])
-        records["time"], records["pass_number"] = time[seen], number
-        store.append(number, records)
-    return Survey([], frame, store, "", dict.fromkeys((0, 1), SENSOR), None, [0], True, True, above_road=12.0), edges
 
 
 @pytest.mark.parametrize("up", [0.0, 6.0])

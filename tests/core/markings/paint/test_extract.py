@@ -21,6 +21,7 @@ from lanewright.core.survey.store.section_store import SectionStore, StoreIndex
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from lanewright.products.published_markings import METHODS
 from painted_streets import ASPHALT, DENSITY, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
+from scipy.ndimage import gaussian_filter
 
 gdal = pytest.importorskip("osgeo.gdal")
 
@@ -101,6 +102,23 @@ def test_patches_seams_and_worn_tracks_are_not_paint_nor_are_the_rims_of_patches
         return np.where(patch, brighter, 1.0) * (1 + 0.15 * np.cos(3 * d)) * np.where(np.abs(s - 50) < 0.03, 0.5, 1.0)
 
     assert len(found_on(street(FRAME, level=level), tmp_path)) == 0
+
+
+@pytest.mark.parametrize("darker", [1.5, 3.0])
+def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_and_its_edge_is_no_paint(tmp_path, darker):
+    line, grain = strip(10, 50, 1.0, 1.15), gaussian_filter(np.random.default_rng(1).normal(size=(3100, 800)), 2.0)
+
+    def level(s, d):
+        """Grain of two pixels, and a shadow whose edge runs across the road."""
+        rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
+        return (1.0 + rough) / np.where((s > 28 + d) & (s < 40 + d), darker, 1.0)
+
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    records = records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0)
+    found = found_on(records, tmp_path)
+    on_line = strip(9.9, 50.1, 0.95, 1.2)(found.s, found.d)
+    assert on_line.mean() > 0.98
+    assert len(np.unique(found.s[on_line] // 0.5)) >= 78
 
 
 def test_a_line_along_the_rim_of_a_patch_is_paint(tmp_path):
