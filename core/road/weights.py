@@ -173,7 +173,7 @@ class PROFILE:
     min_raised_height_share: float = 0.65   # share of the least height that these cells must show
     # wider profiles
     sparse_points: int = 16   # points of a profile within road_side_length of a place, below which the place is looked at in wider ones, of
-    wider_profiles: tuple[int, ...] = 1, 3   # so many more profiles on either side
+    wider_profiles: tuple[int, ...] = 1, 3, 6   # so many more profiles on either side
     least_behind: int = 4   # points behind a step in those, which tell the slope of the ground
     least_sharpness: float = 0.75   # share of its height that must lie right at its face
     # averaged profiles
