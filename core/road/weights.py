@@ -171,11 +171,6 @@ class PROFILE:
     max_rise_width: float = 0.15   # m across within which the whole rise must lie
     min_raised_cells: int = 3   # cells of raised ground behind a rise that a statement about its height needs
     min_raised_height_share: float = 0.65   # share of the least height that these cells must show
-    # wider profiles
-    sparse_points: int = 16   # points of a profile within road_side_length of a place, below which the place is looked at in wider ones, of
-    wider_profiles: tuple[int, ...] = 1, 3, 6   # so many more profiles on either side
-    least_behind: int = 4   # points behind a step in those, which tell the slope of the ground
-    least_sharpness: float = 0.75   # share of its height that must lie right at its face
     # averaged profiles
     averaging_length: float = 1.25   # m of road that are averaged
     skew_step: float = 0.125   # m outward per m along between the directions tried: 4 cm at the ends of the average
@@ -562,7 +557,7 @@ class SURFACE:
     step_columns: int = 2   # 0.5 m of other ground end the street; one cell alone is a thing on it
     smoothed_rows: int = 5   # 2.5 m along the road: the far end of the scan frays
     # margins too thin for curbs
-    min_curb_density: float = 40.0   # points per m² of ground: a face of 10 cm then has some five per metre; where they are fewer curbs may be lost
+    min_curb_density: float = 80.0   # points per m² of ground: a face of 10 cm then has some ten per metre; surveys thinned below it lose curbs
     margin: float = 1.0   # m inside the limits of the carriageway in which points are counted
     stretch_rows: int = 20   # rows of ground cells that are looked at together
     seen_share: float = 0.3   # of the cells of a stretch that must hold ground: where something hides it, nothing is said

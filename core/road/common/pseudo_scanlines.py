@@ -126,28 +126,11 @@ def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jum
     """The same profiles from the points alone that lay `nearest` <= distance < `farthest` metres ahead when they were measured."""
     along = lines.along.take(lines.point)
     indices = np.flatnonzero((along >= nearest) & (along < farthest))
-    return replace(_of_points(lines, indices, _places(lines)[indices], layer_jump), spread=lines.spread)
-
-
-def widened(lines: PseudoScanLines, reach: int, where: np.ndarray, layer_jump: float) -> PseudoScanLines:
-    """The same profiles, each with the points of as many more, `reach`, on either side of it; `where` : (P, C) bool, in which cells."""
-    (rows, cells), place = lines.shape, _places(lines)
-    indices = np.flatnonzero(where.ravel().take(place))
-    place = (place.take(indices) + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
-    inside = np.flatnonzero((place >= 0) & (place < rows * cells))
-    return replace(_of_points(lines, np.tile(indices, 2 * reach + 1)[inside], place[inside], layer_jump), noise=lines.noise, spread=lines.spread)
-
-
-def _places(lines):
-    """(N,) cell of every sorted point."""
-    return np.repeat(np.arange(lines.low.size), np.diff(lines.starts))
-
-
-def _of_points(lines, indices, place, layer_jump):
-    """Profiles like others of some of their sorted points, in cells `place`."""
     point, (rows, cells) = lines.point.take(indices), lines.shape
-    return profiles_of_cells((lines.u.take(point), lines.s.take(point), lines.h.take(indices), lines.along.take(point)), place,
-                             (lines.first, lines.first + rows), cells, lines.width, lines.spacing, layer_jump, lines.origin)
+    result = pseudo_scan_lines(lines.u.take(point), lines.s.take(point), lines.h.take(indices), along.take(indices),
+                               (lines.first, lines.first + rows), lines.width, lines.spacing, layer_jump, lines.origin,
+                               lines.origin + cells * lines.spacing)
+    return replace(result, spread=lines.spread)
 
 
 def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.ndarray, profiles: tuple[int, int], width: float,

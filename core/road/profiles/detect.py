@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
@@ -20,14 +18,13 @@ from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.pseudo_scanlines import widened
 from ..common.side_curbs import Search, Section, curbs_along, grids_beside, merged_passes, steps_of_roads
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 from ..curb_returns.detect import with_curb_returns
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, PROFILE
-from .steps import beside, find_averaged_steps, find_steps
+from .steps import find_averaged_steps, find_steps
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
@@ -94,39 +91,19 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
 
 
 def _steps_by_noise(lines, section, settings, overgrown):
-    """Steps of a section's profiles: on each profile alone, averaged with its neighbours where noise would hide a curb, or in wider ones.
+    """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb.
 
     overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
     """
     section_lines = lines.part(*section)
     limits = settings.limits
     noisy = section_lines.spread > CURBS.noisy_share * limits.clear_height
-    steps = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
-    if not noisy.all():
-        steps = _with_wider_profiles(steps, lines, section, settings)
+    single = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
     if not noisy.any():
-        return steps
+        return single
     averaged = find_averaged_steps(lines, CURBS.low_curb_share * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
-    return CurbSteps.join([steps[~noisy[steps.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
-
-
-def _with_wider_profiles(steps, lines, section, settings):
-    """Also the steps that more profiles together show where one alone holds too few points: the fewer these are, the more profiles it takes."""
-    reach = int(round(CURBS.road_side_length / lines.spacing))
-    before = np.cumsum(np.pad(np.diff(lines.starts).reshape(lines.shape), ((0, 0), (reach + 1, reach))), axis=1)
-    sparse = before[:, 2 * reach + 1:] - before[:, :-2 * reach - 1] < PROFILE.sparse_points
-    around = maximum_filter1d(sparse, 2 * int(reach + CURBS.face_search_half_width / lines.spacing) + 1, axis=1)
-    for wider in PROFILE.wider_profiles:
-        more = find_steps(widened(lines, wider, maximum_filter1d(around, 2 * wider + 1, axis=0), settings.layer_jump).part(*section),
-                          CURBS.low_curb_share * settings.limits.least_height, settings.max_height, PROFILE.least_sharpness)
-        cell = np.clip(np.floor((more.u - lines.origin) / lines.spacing).astype(int), 0, lines.shape[1] - 1)
-        off, width = more.s - (more.profile + 0.5) * lines.width, (2 * wider + 1) * lines.width
-        # a face in one half of a profile alone begins or ends there
-        more = replace(more, s=more.s - off, u=more.u - more.skew * off, support=np.maximum(more.support // (2 * wider + 1), 1))[
-            sparse[more.profile - lines.first, cell] & (more.behind >= PROFILE.least_behind) & (np.abs(off) <= 0.25 * width)]
-        steps = CurbSteps.join([steps, more[~beside(more, steps)]])
-    return steps
+    return CurbSteps.join([single[~noisy[single.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
 
 
 # The principal points of every profile as a layer: the ground on which curbs are looked for.

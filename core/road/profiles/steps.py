@@ -11,16 +11,15 @@ from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, near
 from ..weights import CURBS, PROFILE
 
 
-def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, least_sharpness: float = -np.inf) -> CurbSteps:
+def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> CurbSteps:
     """Steps on every single profile of one side.
 
     min_height, max_height : m, of a step
-    least_sharpness : as of `measure_corners`
 
     Returns CurbSteps, sorted by profile, then outward
     """
     rows, cells = _rising_cells(lines, min_height, max_height)
-    return measure_corners(lines, rows, cells, min_height, max_height, least_sharpness)
+    return measure_corners(lines, rows, cells, min_height, max_height)
 
 
 def _rising_cells(lines, min_height, max_height):
@@ -104,14 +103,14 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
                             np.maximum(min_height, PROFILE.single_view_sigmas * lines.spread)[:, None], max_height)
-        result = CurbSteps.join([result, single[~beside(single, result)]])
+        result = CurbSteps.join([result, single[~_beside(single, result)]])
     for steps in before_plants:
         # level ground behind is the surer sign
-        result = CurbSteps.join([result, steps[~beside(steps, result)]])
+        result = CurbSteps.join([result, steps[~_beside(steps, result)]])
     return result[np.lexsort((result.u, result.profile))]
 
 
-def beside(steps: CurbSteps, others: CurbSteps) -> np.ndarray:
+def _beside(steps, others):
     """(M,) bool: does one of the others lie within PROFILE.same_step_distance metres across in the same profile?"""
     return nearest_distance(steps.profile * 1000.0 + steps.u, others.profile * 1000.0 + others.u) < PROFILE.same_step_distance
 
