@@ -164,7 +164,6 @@ ROWS = (
         ("profiles: ground stays up", "profiles.steps:_stays_up", all_of(3)),
         ("passes merged", "common.side_curbs:merged_passes", lambda found: type(found[0]).join(found)),
         ("scanlines: ground stays up", "scanlines.candidates:_stays_up", all_of(1)),
-        ("scanlines: measured itself", "scanlines.candidates:_measured_itself", all_of(1)),
         ("scanlines: neighbours agree", "scanlines.candidates:_persistent", all_of(0)),
         ("scanlines: passes merged", "scanlines.detect:merged_corners", lambda found: type(found[0]).join(found)),
         ("hidden curb", "common.hidden_curb:hidden_points", gives([]), "parked cars",

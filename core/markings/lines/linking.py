@@ -313,7 +313,7 @@ def _slopes(strands):
     owner = np.repeat(np.arange(len(strands)), counts)
     own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
     stations = [np.arange(strand.first + TREND.trend_step / 2, strand.last, TREND.trend_step) for strand in strands]
-    strand_of_step = np.repeat(np.arange(len(strands)), [len(steps) for steps in stations])
+    strand_of_step = np.repeat(np.arange(len(strands)), list(map(len, stations)))
     stations = np.concatenate(stations)
     # strands one after the other, so far apart that none reaches into the next
     separation = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * TREND.slope_window)
