@@ -8,8 +8,9 @@ import laspy
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.progress import Progress, RememberedMessages
+from lanewright.core.common.progress import RememberedMessages
 from lanewright.core.survey.frame.row_table import SigmaAlong
 from lanewright.core.survey.open_survey import SurveySettings, open_survey, section_length
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -137,7 +138,7 @@ def test_several_passes_without_time_are_warned_of_by_the_name_of_what_lacks_it(
     driven = replace(joined(there, back), has_time=lacking != "trajectory")
     heard = Heard()
     open_survey([write_cloud(tmp_path / "twice.laz", *both[:3 if lacking == "points" else 4], crs=CRS)], driven, progress=heard)
-    assert any(re.search(f"{said}.*Driven 2 times over 1 road.*passes are mixed.*Export points and trajectory", text) for text in heard.warnings)
+    assert any(re.search(f"{said}.*Driven 2 times over 1 road.*passes are mixed.*Export points and trajectory", text) for text in heard.warned)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.45, -0.3])
@@ -269,14 +270,6 @@ def test_two_vehicles_of_different_height_agree_on_the_road(tmp_path):
     np.testing.assert_allclose(survey.road_height(0, np.linspace(-5, 190, 99)) + survey.frame.origin[2], 100.0, atol=0.01)
 
 
-class Heard(Progress):
-    """Listens to the warnings."""
-
-    def __init__(self):
-        self.warnings = []
-
-    def warn(self, text):
-        self.warnings.append(text)
 
 
 @pytest.mark.parametrize("unit, warned", [(1.0, False), (0.3048, True)])
@@ -289,7 +282,7 @@ def test_heights_of_a_trajectory_in_feet_are_warned_of_where_the_road_climbs(tmp
     points = x, y, z + np.interp(time, driven.time, hill), time
     heard = Heard()
     open_survey([write_cloud(tmp_path / "hill.laz", *points, crs=CRS)], replace(driven, z=driven.z / unit), progress=heard)
-    assert [bool(re.search("does not keep to one height above the road.*may be in feet", text)) for text in heard.warnings] == [True] * warned
+    assert [bool(re.search("does not keep to one height above the road.*may be in feet", text)) for text in heard.warned] == [True] * warned
 
 
 @pytest.mark.parametrize("unit, crs, warned", [(0.3048, None, True), (0.3048, CRS, False), (1.0, None, False)])
@@ -301,8 +294,8 @@ def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path
                      z=trajectory.z / unit)
     heard = Heard()
     open_survey([write_cloud(tmp_path / "feet.laz", *feet, crs=crs)], driven, progress=heard)
-    assert any(re.search("as if cloud and trajectory were in feet.*Set the parameter CRS", text) for text in heard.warnings) == warned
-    assert not any("The times of the points" in text for text in heard.warnings)
+    assert any(re.search("as if cloud and trajectory were in feet.*Set the parameter CRS", text) for text in heard.warned) == warned
+    assert not any("The times of the points" in text for text in heard.warned)
 
 
 @pytest.mark.parametrize("late, warned", [
@@ -312,7 +305,7 @@ def test_times_that_run_against_the_trajectory_are_warned_of_once(street, late, 
     trajectory, _, path = street
     heard = Heard()
     open_survey([path], replace(trajectory, time=trajectory.time + late), progress=heard)
-    said = [text for text in heard.warnings if "do not seem to fit" in text]
+    said = [text for text in heard.warned if "do not seem to fit" in text]
     assert len(said) == (warned is not None) and all(warned in text for text in said)
 
 
@@ -322,7 +315,7 @@ def test_a_scanner_that_sees_far_ahead_and_behind_in_every_turn_keeps_time(stree
     heard = Heard()
     seen = np.clip(seen, trajectory.time[0], trajectory.time[-1])
     open_survey([write_cloud(tmp_path / "spinning.laz", x, y, z, seen, crs=CRS)], trajectory, progress=heard)
-    assert not [text for text in heard.warnings if "do not seem to fit" in text]
+    assert not [text for text in heard.warned if "do not seem to fit" in text]
 
 
 @pytest.mark.parametrize("own, given, says", [
@@ -333,7 +326,7 @@ def test_the_user_hears_what_became_of_the_crs(street, tmp_path, own, given, say
     trajectory, points, _ = street
     heard = Heard()
     open_survey([write_cloud(tmp_path / "c.laz", *points, crs=own)], trajectory, SurveySettings(crs=given), heard)
-    assert len(heard.warnings) == (says is not None) and all(re.search(says, text) for text in heard.warnings)
+    assert len(heard.warned) == (says is not None) and all(re.search(says, text) for text in heard.warned)
 
 
 def test_degrees_and_a_cloud_without_crs_cannot_be_brought_together(street, tmp_path):
@@ -377,7 +370,7 @@ def test_a_copy_among_the_files_counts_once(street, surveyed, tmp_path):
     heard = Heard()
     survey = open_survey([path, write_cloud(tmp_path / "copy.laz", *points, crs=CRS)], trajectory, progress=heard)
     np.testing.assert_array_equal(contents(survey), surveyed)
-    assert ["copy.laz holds the same points as" in text for text in heard.warnings] == [True]
+    assert ["copy.laz holds the same points as" in text for text in heard.warned] == [True]
 
 
 def test_points_without_a_time_are_counted_aloud(street, tmp_path):
@@ -385,7 +378,7 @@ def test_points_without_a_time_are_counted_aloud(street, tmp_path):
     heard, time = Heard(), np.where(np.arange(len(time)) % 4 == 0, np.nan, time)
     survey = open_survey([write_cloud(tmp_path / "nan.laz", x, y, z, time, crs=CRS)], trajectory, progress=heard)
     lost = np.count_nonzero(np.isnan(time))
-    assert survey.counts["kept"] == len(x) - lost and f"{lost:,} of {len(x):,} points were left out" in heard.warnings[0]
+    assert survey.counts["kept"] == len(x) - lost and f"{lost:,} of {len(x):,} points were left out" in heard.warned[0]
 
 
 @pytest.mark.parametrize("points, metres", [(80_000, 5.0), (20_000, 10.0), (8_400, 25.0), (100, 25.0)])

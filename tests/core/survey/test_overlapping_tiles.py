@@ -5,21 +5,13 @@ import re
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, contents, drive, surveyed_points, write_cloud
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.open_survey import open_survey
 
 CRS = "EPSG:32632"
 PATH = chain(ahead(80), bend(60, 60), ahead(60))
 
 
-class Heard(Progress):
-    """Listens to what is said."""
-
-    def __init__(self):
-        self.infos = []
-
-    def info(self, text):
-        self.infos.append(text)
 
 
 @pytest.fixture
@@ -43,7 +35,7 @@ def test_points_that_overlapping_tiles_share_are_used_once(street, tmp_path):
     survey = open_survey(tiles(tmp_path, points, 40.0), trajectory, progress=heard)
     np.testing.assert_array_equal(contents(survey), contents(open_survey([path], trajectory)))
     shared = np.mean(np.abs(points[0] - np.median(points[0])) < 20.0)
-    told = [re.match(r"About ([\d.]+) % of the points that were read are copies", text) for text in heard.infos]
+    told = [re.match(r"About ([\d.]+) % of the points that were read are copies", text) for text in heard.said]
     assert [float(match[1]) for match in told if match] == [pytest.approx(100 * shared / (1 + shared), rel=0.1)]
 
 
@@ -51,7 +43,7 @@ def test_of_tiles_that_only_touch_nothing_is_said(street, tmp_path):
     trajectory, points, _ = street
     heard = Heard()
     open_survey(tiles(tmp_path, points, 0.0), trajectory, progress=heard)
-    assert heard.infos and not [text for text in heard.infos if "copies" in text]
+    assert heard.said and not [text for text in heard.said if "copies" in text]
 
 
 def test_points_without_time_that_overlapping_tiles_share_are_used_once(street, tmp_path):

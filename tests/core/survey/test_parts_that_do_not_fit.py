@@ -6,17 +6,9 @@ from dataclasses import replace
 import laspy
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.open_survey import open_survey
 from scipy.spatial import cKDTree
-
-
-class Heard(Progress):
-    def __init__(self):
-        self.warned = []
-
-    def warn(self, text):
-        self.warned.append(text)
 
 
 @pytest.fixture(scope="module")

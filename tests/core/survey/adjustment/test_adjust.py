@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.adjustment.adjust import adjust_passes, solve_corrections
 from lanewright.core.survey.adjustment.register import PassOffsets, Strips, pass_offsets
 from scanned_streets import driven, scanned, survey_of
@@ -51,15 +51,6 @@ def face_of(survey, number):
     return (np.bincount(metre, points["d"][face] * 1e-4) / np.maximum(np.bincount(metre), 1))[known]
 
 
-class Heard(Progress):
-    def __init__(self):
-        self.said, self.warned = [], []
-
-    def info(self, text):
-        self.said.append(text)
-
-    def warn(self, text):
-        self.warned.append(text)
 
 
 @pytest.fixture(scope="module")

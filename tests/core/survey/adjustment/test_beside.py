@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.adjustment.adjust import compare_carriageways, roads_beside, warnings_of_levels
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -12,15 +12,6 @@ from lanewright.core.survey.trajectory.trajectory import Trajectory
 LENGTH = 200.0
 
 
-class Heard(Progress):
-    def __init__(self):
-        self.said, self.warned = [], []
-
-    def info(self, text):
-        self.said.append(text)
-
-    def warn(self, text):
-        self.warned.append(text)
 
 
 def carriageways(apart=17.0, rise=lambda x: 0.0 * x, level=0.0, height=102.5):

@@ -4,17 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.adjustment.scanner_fit import lay_scanners
 from scanned_streets import driven, scanned, survey_of
-
-
-class Heard(Progress):
-    def __init__(self):
-        self.warned = []
-
-    def warn(self, text):
-        self.warned.append(text)
 
 
 def seen_by_two(moved=lambda x, y, z: (x, y, z), lost=0.1, seeds=(1, 2), seconds=8.0):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import EAST, NORTH
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.adjustment.trajectory_fit import fitted_trajectory, read_places, scanner_mountings
 from lanewright.core.survey.las.reader import read_headers
 from lanewright.core.survey.open_survey import open_survey
@@ -16,12 +16,6 @@ from mirror_drives import Mirror, mirror_drive
 PAIR = Mirror(turn=-45.0, lever=(-2.4, 0.3, 0.1)), Mirror(turn=45.0, lever=(-2.4, -0.3, 0.1), ahead=0.7)
 
 
-class Heard(Progress):
-    def __init__(self):
-        self.warned = []
-
-    def warn(self, text):
-        self.warned.append(text)
 
 
 @pytest.fixture(scope="module")

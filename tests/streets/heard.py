@@ -1,0 +1,16 @@
+"""What a run says, kept for the tests."""
+
+from lanewright.core.common.progress import Progress
+
+
+class Heard(Progress):
+    """Keeps what was said, and what was warned of."""
+
+    def __init__(self):
+        self.said, self.warned = [], []
+
+    def info(self, text):
+        self.said.append(text)
+
+    def warn(self, text):
+        self.warned.append(text)
