@@ -84,7 +84,7 @@ class DetectCurbs(Algorithm):
         self.add_sink("PRINCIPAL_POINTS", geometry="PointZ", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.road.profiles.detect import detect_curbs
+        from ..core.road.detect_boundaries import BoundarySettings, find_curb_points
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         settings = call.settings(CURB_SETTINGS)
@@ -92,7 +92,7 @@ class DetectCurbs(Algorithm):
             from ..core.road.profiles.detect import find_principal_points
 
             call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
-        points = detect_curbs(survey, settings, progress.part(0.6, 1.0))
+        points = find_curb_points(survey, BoundarySettings("profiles", settings), progress.part(0.6, 1.0))["profiles"]
         call.layer("CURB_POINTS", points.to_features(survey.frame))
 
 

@@ -5,13 +5,14 @@ The operating system keeps in memory what was written and read last, once for al
 
 from __future__ import annotations
 
+import math
 import mmap
 import os
 import struct
 import tempfile
 import threading
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -25,6 +26,7 @@ from ...execution.phase import checksum
 from ..weights import STORE
 
 SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
+ArrayPlace = tuple[str, int]   # the name of a file and the first byte of an array there
 ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
 
 
@@ -136,9 +138,9 @@ def close_files() -> None:
 
 
 @contextmanager
-def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
+def new_file(folder: Path, kind: str = "points") -> Iterator[tuple[ArrayFile, str]]:
     """A new file in a folder and its name, under which it appears there at the end, whole or not at all; without a byte in it there is none."""
-    name = f"points-{uuid4().hex}.bin"
+    name = f"{kind}-{uuid4().hex}.bin"
     unfinished = folder / f"{name}.part"
     file = ArrayFile(unfinished)
     try:
@@ -151,6 +153,45 @@ def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
     finally:
         file.close()
         unfinished.unlink(missing_ok=True)
+
+
+class SharedArrays:
+    """Arrays that tasks write, each task those of its own at once; whoever does so, and the caller, finds them again by their places.
+
+    folder : that all of them see, in which each task makes a file; None for threads, which share a temporary file without a name
+    """
+
+    def __init__(self, folder: Path | str | None) -> None:
+        self.folder = folder and Path(folder)
+        self._file = None if folder else ArrayFile()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"folder": str(self.folder)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    def put(self, arrays: Iterable[np.ndarray]) -> list[ArrayPlace]:
+        """Write arrays; where each of them lies."""
+        if self._file is not None:
+            return [("", self._file.put([array], array.nbytes)) for array in arrays]
+        with new_file(self.folder, "arrays") as (file, name):
+            return [(name, file.put([array], array.nbytes)) for array in arrays]
+
+    def get(self, place: ArrayPlace, shape: Sequence[int], dtype: Any = np.float32) -> np.ndarray:
+        """An array that was written, read-only, which stays in its file until it is used."""
+        name, first = place
+        file = opened(self.folder / name) if self._file is None else self._file
+        return file.get(first, math.prod(shape), dtype).reshape(shape)
+
+    def close(self, places: Iterable[ArrayPlace] = ()) -> None:
+        """Release the disk space of a file without a name, or of those in which arrays lie; all others go with the folder."""
+        if self._file is not None:
+            self._file.close()
+            return
+        close_files()
+        for name in {name for name, _ in places}:
+            (self.folder / name).unlink(missing_ok=True)
 
 
 def files_are_whole(folder: Path) -> bool:
