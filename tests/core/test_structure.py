@@ -14,8 +14,8 @@ MODULES = [path for path in FILES if path.name != "__init__.py"]
 # Each room imports only from those before it
 ORDER = tuple(f"core/{name}" for name in ("lazy", "common", "execution", "countries", "io", "curves", "survey", "road", "intensity", "markings",
                                           "driving", "corrections", "pipeline")) + \
-    tuple(f"products/{name}" for name in ("inspection", "scanline_layer", "published_markings", "inventory", "surface", "cloud", "export",
-                                          "cad", "client_fields", "assess", "overlay", "report")) + ("simulator",)
+    tuple(f"products/{name}" for name in ("inspection", "scanline_layer", "published_markings", "inventory", "surface", "cloud", "assess",
+                                          "export", "cad", "client_fields", "overlay", "report")) + ("simulator",)
 # Module-level numbers of each room: every one is a decision that a reader must know
 NUMBERS = {
     "core/common": 11,
