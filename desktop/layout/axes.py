@@ -374,14 +374,14 @@ def _walk(line, axis, axes, width, height, number):
 
     while begin < line.length - 1e-6:
         reach = (line.length - begin) / math.ceil((line.length - begin) / (width * (1 - OVERLAP)) - 1e-9)
-        while not (found := shown(reach))[2] and reach >= LEAST_REACH * width:
+        while not (stretch := shown(reach))[2] and reach >= LEAST_REACH * width:
             reach *= SHORTENED
-        if found[0] < line.length:   # at no junction, where that takes no further sheet
+        if stretch[0] < line.length:   # at no junction, where that takes no further sheet
             most = round((line.length - begin) / reach - 1) * width * (1 - OVERLAP)
             cuts = (shown(share * reach) for share in CUTS)
-            found = next((cut for cut in cuts if cut[2] and line.length - cut[0] <= most and not _in_junction(line.interpolate(cut[0]), axis, axes)),
-                         found)
-        end, sheet, _ = found
+            stretch = next((cut for cut in cuts if cut[2] and line.length - cut[0] <= most
+                            and not _in_junction(line.interpolate(cut[0]), axis, axes)), stretch)
+        end, sheet, _ = stretch
         if sheets:
             here = _heading(line, begin)
             sheets[-1].matches.append(Match(*here, sheet.number))
