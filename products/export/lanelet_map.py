@@ -339,7 +339,8 @@ def _signals(whole, places, crs):
     layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
     for lanelet in whole.lanelets.values():
         for rule in (whole.others.get(id) for _, id in lanelet.members.get("regulatory_element", ())):
-            for _, id in rule.members.get("refers", ()) if rule is not None else ():
+            waits = rule is not None and ("relation", lanelet.id) not in rule.members.get("right_of_way", ())
+            for _, id in rule.members.get("refers", ()) if waits else ():
                 obeying[id].append(str(lanelet.id))
     for way in whole.ways.values():
         points, kind = places[whole.rows(way)], KIND_OF_WAY.get(way.tags.get("type", ""))
@@ -350,7 +351,7 @@ def _signals(whole, places, crs):
             named = re.fullmatch(r"([A-Za-z]{2})(\w+?)(?:-(.+))?", way.tags.get("subtype", "")) if kind == "sign" else None
             code = dict(zip(("country", "code", "subcode"), named.groups())) if named else {}
             about = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
-            layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(obeying[way.id]), heading=heading,
+            layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(dict.fromkeys(obeying[way.id])), heading=heading,
                       height_m=height or np.nan, width_m=width if width > LEAST_LED else np.nan,
                       **{**code, **about, "value": length_of_tag(about.get("value"))})
     return layer
@@ -371,7 +372,8 @@ def _left_out(whole):
     count = Counter(f"{lanelet.tags['subtype']} lanelet" for lanelet in whole.lanelets.values()
                     if lanelet.tags.get("subtype") in NEVER_DRIVEN and lanelet.tags["subtype"] != "crosswalk")
     return count + Counter(f"{kind} {relation.tags.get('subtype', '')}".strip() for relation in whole.others.values()
-                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED)
+                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED
+                           and not (relation.tags.get("subtype") == "right_of_way" and "refers" in relation.members))
 
 
 def kmh(text: str) -> float | None:
