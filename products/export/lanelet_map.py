@@ -336,12 +336,12 @@ def _outlines(whole, places, network):
 
 def _signals(whole, places, crs):
     """The layer SIGNALS of the ways of lights, signs and poles, with the lanelets that obey them."""
-    layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
+    layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(dict)
     for lanelet in whole.lanelets.values():
         for rule in (whole.others.get(id) for _, id in lanelet.members.get("regulatory_element", ())):
             waits = rule is not None and ("relation", lanelet.id) not in rule.members.get("right_of_way", ())
             for _, id in rule.members.get("refers", ()) if waits else ():
-                obeying[id].append(str(lanelet.id))
+                obeying[id][str(lanelet.id)] = rule
     for way in whole.ways.values():
         points, kind = places[whole.rows(way)], KIND_OF_WAY.get(way.tags.get("type", ""))
         if kind and len(points):
@@ -351,7 +351,7 @@ def _signals(whole, places, crs):
             named = re.fullmatch(r"([A-Za-z]{2})(\w+?)(?:-(.+))?", way.tags.get("subtype", "")) if kind == "sign" else None
             code = dict(zip(("country", "code", "subcode"), named.groups())) if named else {}
             about = {name[len(OURS):]: value for name, value in way.tags.items() if name.startswith(OURS)}
-            layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(dict.fromkeys(obeying[way.id])), heading=heading,
+            layer.add(shapely.Point(*points[:, :2].mean(0), points[:, 2].min()), kind=kind, lanes=",".join(obeying[way.id]), heading=heading,
                       height_m=height or np.nan, width_m=width if width > LEAST_LED else np.nan,
                       **{**code, **about, "value": length_of_tag(about.get("value"))})
     return layer
