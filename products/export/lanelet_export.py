@@ -28,8 +28,6 @@ SUBTYPE_OF_PATTERN = {pattern: subtype for subtype, pattern in PATTERN_OF_WAY.it
 TURN = 0.5              # rad from which a way through a junction is a turn
 GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH", "3.01"), ("CH", "3.02"), ("FR", "AB3a"), ("FR", "AB4"),
             ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
-CROSSED = 1.0           # m² that two ways through a junction share where they cross or merge
-STOPS = 2.0             # m from the end of a lanelet to the line at which its traffic stops
 
 
 @dataclass(frozen=True)
@@ -239,16 +237,16 @@ class _Drafting:
         lanes, rows = self.lanes, {name: k for k, name in enumerate(self.lanes.lane_id)}
         ways = {name: [rows[after] for after in lanes.successors[rows[name]] if after in rows and lanes.type[rows[after]] == "connector"]
                 for name in last if lanes.type[rows[name]] != "connector"}
-        area = {k: shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2]))
-                for k in {row for through in ways.values() for row in through} for left, right in [lanes.borders(k)]}
+        borders = map(lanes.borders, range(len(lanes)))
+        area = [shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
         waiting = {name for _, names in signs for name in names}
         stops = [way for way in self.draft.ways if way.tags["type"] == "stop_line"]
         for sign, names in signs:
-            own = shapely.union_all([area[k] for name in names for k in ways.get(name, ())])
-            first = [last[name] for name in sorted(ways.keys() - waiting) if any(area[k].intersection(own).area > CROSSED for k in ways[name])]
-            ends = [shapely.Point(self.draft.nodes[self.draft.ways[last[name].way("centerline")].nodes[-1]]) for name in names]
-            lines = [("way", way.id) for way in stops
-                     if any(end.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < STOPS for end in ends)]
+            # more than the stripe that neighbours have between them
+            own = shapely.union_all([area[k] for name in names for k in ways.get(name, ())]).buffer(-WIDEST_DOUBLE)
+            first = [last[name] for name in sorted(ways.keys() - waiting) if any(own.intersects(area[k]) for k in ways[name])]
+            before = shapely.union_all([area[rows[name]] for name in names])
+            lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
             if first:
                 members = {"refers": [("way", sign)], "yield": [("relation", last[name].id) for name in names],
                            "right_of_way": [("relation", lanelet.id) for lanelet in first], "ref_line": lines}
