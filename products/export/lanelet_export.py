@@ -243,8 +243,8 @@ class _Drafting:
         stops = [way for way in self.draft.ways if way.tags["type"] == "stop_line"]
         for sign, names in signs:
             # more than the stripe that neighbours have between them
-            own = shapely.union_all([area[k] for name in names for k in ways.get(name, ())]).buffer(-WIDEST_DOUBLE)
-            first = [last[name] for name in sorted(ways.keys() - waiting) if any(own.intersects(area[k]) for k in ways[name])]
+            taken = shapely.union_all([area[k] for name in names for k in ways.get(name, ())]).buffer(-WIDEST_DOUBLE)
+            first = [last[name] for name in sorted(ways.keys() - waiting) if any(taken.intersects(area[k]) for k in ways[name])]
             before = shapely.union_all([area[rows[name]] for name in names])
             lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
             if first:
