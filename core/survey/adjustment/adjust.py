@@ -118,7 +118,7 @@ def _report_offsets(road, offsets, corrections, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    if warning := warning_of_places(road, remaining_places(offsets, corrections)):
+    for warning in filter(None, (warning_of_places(road, remaining_places(offsets, corrections)), warning_of_rebuilt(road, offsets))):
         progress.warn(warning)
 
 
@@ -307,7 +307,7 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, remain=True)}: lines may be doubled there. "
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
             "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
@@ -316,10 +316,17 @@ def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) ->
             "measure a control point there if these centimetres matter.") if places else ""
 
 
-def _named_places(places: list[tuple[float, float, float]], remain: bool = False) -> str:
+def warning_of_rebuilt(road: int, offsets: list[PassOffsets]) -> str:
+    """What to tell where curbs stand elsewhere in one pass than in another, along two windows and more; "" where they do not."""
+    places = _stretches_of((station, metres) for pair in offsets for station, metres in np.broadcast(pair.stations, pair.rebuilt) if metres > 0.0)
+    places = [place for place in places if place[1] - place[0] > WINDOW_LENGTH]
+    return (f"Road {road}: its drives show other ground at {_named_places(places, 'on a strip of up to {:.0f} cm')}: the street seems to have been "
+            "rebuilt between them. Process the files of each drive by itself.") if places else ""
+
+
+def _named_places(places: list[tuple[float, float, float]], what: str = "by up to {:.1f} cm") -> str:
     named = [f"{start:.0f} to {end:.0f} m (more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-             else f"{start:.0f} to {end:.0f} m (up to {100 * metres:.1f} cm remain)" if remain
-             else f"{start:.0f} to {end:.0f} m (by up to {100 * metres:.1f} cm)" for start, end, metres in places[:ADJUST.most_named]]
+             else f"{start:.0f} to {end:.0f} m ({what.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named]]
     further = len(places) - len(named)
     return "; ".join([*named, f"and at {further} further places"] if further else named)
 
