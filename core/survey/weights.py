@@ -281,8 +281,6 @@ class TRAJECTORY:
     least_named: int = 2   # roles that the line of names must hold
     checked_rows: int = 200   # rows by which it is told whether a column takes several fields
     head_bytes: int = 20_000   # bytes in which it shows that a file is a log of a receiver
-    chunk: int = 1 << 16   # bytes handed to the parser at once
-    most_text: int = 200   # characters of a coordinate or time that are kept
     texts_looked_at: int = 50   # texts of a column by which it is told what they are
     most_of_texts: float = 0.9   # share of these that must agree
     shortest_step: float = 5e-4   # s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
