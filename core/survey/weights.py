@@ -108,9 +108,6 @@ class ADJUST:
     share_along: float = 0.8   # of the shorter of two roads, that they run along each other
     even_rise: float = 0.15   # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
     share_between: tuple[float, float] = 0.25, 0.75   # of the way from one track to the other: what both drives see well
-    height_cell: float = 0.25   # m, of the cells that heights are compared in
-    flat_cell_range: float = 0.03   # m between the highest and the lowest point of a flat cell
-    min_flat_cells: int = 40   # flat cells that both drives see, for a difference
     max_height_apart: float = 0.02   # m in height that two drives may differ by without a warning
     least_told_move: float = 0.005   # m; less is not named in the warning
 

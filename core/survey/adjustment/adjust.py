@@ -23,7 +23,7 @@ from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..weights import ADJUST, FRAME, REGISTER
-from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, Strips, height_offset, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 
@@ -405,28 +405,14 @@ def _parallel(frame):
 def _height_apart(survey, pair, k):
     """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
     road, half = survey.frame.road(pair.one), REGISTER.correction_step / 2
-    sides, cells = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
+    sides, strips = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
     for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
         between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
         s, d = road.locate(points.x[between], points.y[between], corridor=ADJUST.farthest_beside)
-        inside = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
-        cells.append(_flat_cells(s[inside] - pair.stations[k] + half, d[inside] - sides[0], points.z[between[inside]]))
-    (low_cells, low), (high_cells, high) = cells
-    _, a, b = np.intersect1d(low_cells, high_cells, return_indices=True)
-    return float(np.median(high[b] - low[a])) if len(a) >= ADJUST.min_flat_cells else np.nan
-
-
-def _flat_cells(along, across, z):
-    """Numbers of the flat cells that points lie in, rising, and their mean heights, m."""
-    if not len(z):
-        return np.empty(0, int), np.empty(0)
-    cell = (along / ADJUST.height_cell).astype(int) * 1000 + (across / ADJUST.height_cell).astype(int)
-    order = np.argsort(cell, kind="stable")
-    numbers, first = np.unique(cell[order], return_index=True)
-    z = z[order]
-    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < ADJUST.flat_cell_range
-    return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
+        size = round(2 * half / REGISTER.row_cell), round(np.ptp(sides) / REGISTER.lag_cell)
+        strips.append(Strips.of(d - sides[0], s - pair.stations[k] + half, points.z[between], np.zeros(len(between)), size))
+    return -height_offset(*strips, 0)
 
 
 def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
