@@ -445,25 +445,19 @@ class PrintSheets(Algorithm):
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
     NUMBERS = "LANE_COUNT LENGTH".split()
+    FILES, LANELETS = "OpenDRIVE (*.xodr *.XODR *.xml)", False
 
     def declare(self):
-        self.add_input("file", "INPUT", file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
+        self.add_input("file", "INPUT", file_filter=f"{self.FILES};;All files (*.*)")
         add_map_layers(self)
 
     def work(self, call, progress):
-        return write_map_layers(call, map_layers(call, progress, False), progress)
+        return write_map_layers(call, map_layers(call, progress, self.LANELETS), progress)
 
 
-class ImportLanelet2(Algorithm):
+class ImportLanelet2(ImportOpenDrive):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    NUMBERS = "LANE_COUNT LENGTH".split()
-
-    def declare(self):
-        self.add_input("file", "INPUT", file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
-        add_map_layers(self)
-
-    def work(self, call, progress):
-        return write_map_layers(call, map_layers(call, progress, True), progress)
+    FILES, LANELETS = "Lanelet2 (*.osm *.OSM *.xml)", True
 
 
 class ConvertMap(Algorithm):
