@@ -81,7 +81,7 @@ class REGISTER:
     max_runner_up: float = 0.7   # of that ratio, for the second best offset
     parabola_cells: int = 2   # cells either side of the best, for the parabola
     peak_cells: int = 2   # cells beside the best that belong to its peak
-    rebuilt_heights: tuple[float, float] = 0.05, 0.20   # m by which ground lies higher once a street was rebuilt: curbs; cars beside them stand higher
+    rebuilt_heights: tuple[float, float] = 0.05, 0.20   # m by which ground lies higher where a street was rebuilt, as curbs do and cars do not
     rebuilt_share: float = 0.75   # of a window's length, along which it does: two cars in a row are shorter
     least_rebuilt: float = 0.10   # m across of such ground: less is the curb itself, blurred
     sigma_reach: float = 25.0   # m of road either way over which passes are compared: less would be the noise of single offsets

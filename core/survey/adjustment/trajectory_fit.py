@@ -47,7 +47,8 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     for warning in shape.said:
         progress.warn(warning)
     unmoved = shape.trajectory if shape.said else trajectory
-    files = [file for file in files if file.count and runs_through(file.minimum, file.maximum, shape.trajectory.x, shape.trajectory.y, FRAME.corridor)]
+    way = shape.trajectory.x, shape.trajectory.y
+    files = [file for file in files if file.count and runs_through(file.minimum, file.maximum, *way, FRAME.corridor)]
     if not trajectory.has_time or not files or not all(file.has_time for file in files):
         return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
