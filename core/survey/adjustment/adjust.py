@@ -118,7 +118,7 @@ def _report_offsets(road, offsets, corrections, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    for warning in filter(None, (warning_of_places(road, remaining_places(offsets, corrections)), warning_of_rebuilt(road, offsets))):
+    for warning in filter(None, (warning_of_places(road, remaining_places(offsets, corrections)), _warning_of_rebuilt(road, offsets))):
         progress.warn(warning)
 
 
@@ -312,7 +312,7 @@ def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) ->
             "measure a control point there if these centimetres matter.") if places else ""
 
 
-def warning_of_rebuilt(road: int, offsets: list[PassOffsets]) -> str:
+def _warning_of_rebuilt(road: int, offsets: list[PassOffsets]) -> str:
     """What to tell where curbs stand elsewhere in one pass than in another, along two windows and more; "" where they do not."""
     places = _stretches_of((station, metres) for pair in offsets for station, metres in np.broadcast(pair.stations, pair.rebuilt) if metres > 0.0)
     places = [place for place in places if place[1] - place[0] > WINDOW_LENGTH]
