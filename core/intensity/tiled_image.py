@@ -87,7 +87,6 @@ class TiledImage(IntensityImage):
             before.lost = [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in before._tiles
                            if before.states[column, row] != self.states.get((column, row))]
             self._tiles = {tile: stored for tile, stored in before._tiles.items() if before.states[tile] == self.states.get(tile)}
-            before._tiles = {}
         else:
             before.states = {}
         before.close()
@@ -125,8 +124,8 @@ class TiledImage(IntensityImage):
                 pass
 
     def close(self) -> None:
-        self.arrays.close(place for *_, place in self._tiles.values())
         self._tiles = {}
+        self.arrays.close()
 
 
 def _state_of(path):

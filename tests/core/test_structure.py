@@ -88,6 +88,17 @@ def named_imports(path, for_types=False):
             yield (inner if is_module else tuple(base)), node.lineno, alias.name
 
 
+def test_the_code_is_read_by_the_oldest_python_there_is():
+    """Python 3.9, which QGIS brings on macOS, wants parentheses around what is named within an index."""
+    for path in [path for top in ("core", "products", "simulator", "algorithms", "library", "desktop", "processing_provider")
+                 for path in (ROOT / top).rglob("*.py")]:
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.NamedExpr):
+                before = text.splitlines()[node.slice.lineno - 1][:node.slice.col_offset]
+                assert before.rstrip().endswith("("), f"{path.relative_to(ROOT)}, line {node.slice.lineno}"
+
+
 def test_imports_run_one_way_between_folders():
     wrong = [f"{'/'.join(name_of(path))}.py, line {line}: {room_of(name_of(path))} imports {'/'.join(target)}" for path in MODULES
              for target, line in imported(path) if ORDER.index(room_of(target)) > ORDER.index(room_of(name_of(path)))]

@@ -336,9 +336,13 @@ class MeasuredGround:
         self._kept: tuple[dict[tuple[int, int], ArrayPlace], ...] = {}, {}   # of cells and of profiles, by road and first row
         self.followed: dict[int, Any] = {}   # by road: the height of the road in its cells as it was followed, and smoothed; None where there is none
 
+    def forget(self) -> None:
+        """Measure what is wanted from now on anew."""
+        self._kept = {}, {}
+
     def cells(self, road: int) -> GroundCells:
         """The GroundCells of a whole road; those of all roads are measured together."""
-        in_step([self.measured_all(False)], self.survey.executor.passing())
+        in_step([self.measured_all(False)], self.survey.executor)
         rows = windows_of(self.survey, road)
         return self.windows(road, rows, [False] * len(rows))[0]
 
@@ -352,7 +356,7 @@ class MeasuredGround:
             cells : GroundCells of all windows
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
-        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor.passing())
+        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor)
         half = _ground_columns(SURFACE.column_width)
         cells = self._kept_of(0, road, rows, (len(CELL_NAMES), SURFACE.window_rows, 2 * half))
         values = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
@@ -375,7 +379,7 @@ class MeasuredGround:
         kept_cells, kept_profiles = self._kept
         windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
         windows = [window for window in windows if any(window[2:])]
-        self._arrays = self._arrays or SharedArrays(self.survey.executor.passing().folder)
+        self._arrays = self._arrays or SharedArrays(self.survey.executor.folder)
         phase = Phase(ground_of_windows, self.survey, (self._arrays,), lambda item: self.survey.stretch(
             item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
         for places, (road, row, *measured) in zip((yield Asked(phase, windows, 1.0)), windows):

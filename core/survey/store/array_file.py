@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import mmap
 import os
-import struct
 import tempfile
 import threading
 import weakref
@@ -22,10 +21,9 @@ from uuid import uuid4
 import numpy as np
 
 from ...common.parallel import freed_on_demand
-from ...execution.phase import checksum
+from ...execution.phase import SEAL, checksum
 from ..weights import STORE
 
-SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
 ArrayPlace = tuple[str, int]   # the name of a file and the first byte of an array there
 ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
 
@@ -88,7 +86,7 @@ class ArrayFile:
             raise OSError(error.errno, error.strerror, str(self.path or tempfile.gettempdir())) from error
 
     def seal(self) -> None:
-        """Fill the file up to its end and write a checksum of all bytes behind them, by which `files_are_whole` knows them again."""
+        """Fill the file up to its end and write a checksum of all bytes behind them, by which `is_sealed` knows them again."""
         self._file.truncate(self.end)
         self._file.seek(0)
         self._write(self.end, np.frombuffer(SEAL.pack(checksum(self._file, self.end)), np.uint8))
@@ -138,9 +136,9 @@ def close_files() -> None:
 
 
 @contextmanager
-def new_file(folder: Path, kind: str = "points") -> Iterator[tuple[ArrayFile, str]]:
+def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
     """A new file in a folder and its name, under which it appears there at the end, whole or not at all; without a byte in it there is none."""
-    name = f"{kind}-{uuid4().hex}.bin"
+    name = f"points-{uuid4().hex}.bin"
     unfinished = folder / f"{name}.part"
     file = ArrayFile(unfinished)
     try:
@@ -175,7 +173,7 @@ class SharedArrays:
         """Write arrays; where each of them lies."""
         if self._file is not None:
             return [("", self._file.put([array], array.nbytes)) for array in arrays]
-        with new_file(self.folder, "arrays") as (file, name):
+        with new_file(self.folder) as (file, name):
             return [(name, file.put([array], array.nbytes)) for array in arrays]
 
     def get(self, place: ArrayPlace, shape: Sequence[int], dtype: Any = np.float32) -> np.ndarray:
@@ -184,21 +182,7 @@ class SharedArrays:
         file = opened(self.folder / name) if self._file is None else self._file
         return file.get(first, math.prod(shape), dtype).reshape(shape)
 
-    def close(self, places: Iterable[ArrayPlace] = ()) -> None:
-        """Release the disk space of a file without a name, or of those in which arrays lie; all others go with the folder."""
+    def close(self) -> None:
+        """Release the disk space of a file without a name; what lies in a folder may be wanted again."""
         if self._file is not None:
             self._file.close()
-            return
-        close_files()
-        for name in {name for name, _ in places}:
-            (self.folder / name).unlink(missing_ok=True)
-
-
-def files_are_whole(folder: Path) -> bool:
-    """Whether all files of `new_file` in a folder are as they were written, which they may not be after the power failed."""
-    for path in folder.glob("points-*.bin"):
-        with open(path, "rb", buffering=0) as file:
-            end = os.fstat(file.fileno()).st_size - SEAL.size
-            if end < 0 or checksum(file, end) != SEAL.unpack(file.read(SEAL.size))[0]:
-                return False
-    return True
