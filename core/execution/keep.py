@@ -19,7 +19,6 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import free_memory
 from ..common.progress import Progress, RememberedMessages
 from .phase import THREADS, Executor, Items, NoSource, Phase, digest, is_sealed, name_of, read_plain, write_plain
 from .tasks import code_digest, versions
@@ -174,17 +173,10 @@ class Keep(Executor):
 
     @property
     def full(self) -> bool:
-        """Whether so much is kept that the next run had better begin anew; asked between two runs of a window."""
+        """Whether so much is kept that the next run had better begin anew; asked after each run of a window."""
         count = len(self._results) if self.folder is None else sum(1 for _ in self.folder.glob("kept-*"))
         self._first = self._first or count
         return count > EXECUTION.runs_kept * self._first
-
-    def clear(self) -> None:
-        """Keep nothing of what was made, and remove its files, which nobody reads."""
-        self._results, self._whole, self._first = {}, {}, 0
-        free_memory()   # Windows removes no file that is held open
-        for path in [*self.folder.glob("kept-*.plain"), *self.folder.glob("points-*.bin")] if self.folder is not None else ():
-            path.unlink(missing_ok=True)
 
     def discard(self, files: Sequence[Path]) -> None:
         if self.work is None:
@@ -205,6 +197,7 @@ class KeptRun:
 
     def __init__(self) -> None:
         self.wanted, self._in_use = False, threading.Lock()
+        self.results_of_phases: Keep | None = None
         # {stage: (digest, result, what frees its disk space, whether the next one is made from it)}
         self._results: dict[str, tuple[str, Any, Callable[[], None], bool]] = {}
         self._renewed: dict[str, tuple[Any, Callable[[], None]]] = {}   # results that the next ones are made from
@@ -225,8 +218,9 @@ class KeptRun:
         return self._in_use.acquire(blocking=False)
 
     def give_back(self) -> None:
-        if not self.wanted:
+        if not self.wanted or self.results_of_phases is not None and self.results_of_phases.full:
             self.drop_from("")
+            self.results_of_phases = None
         self._in_use.release()
 
     def known(self, stage: str, digest: str) -> bool:

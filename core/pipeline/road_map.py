@@ -148,9 +148,8 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
                                     stages.kept is not None,
                                     depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
                                     free=lambda opened: opened[0].store.close())
-        if stages.kept is not None and survey.executor.full:
-            stages.kept.drop_from("curbs")
-            survey.executor.clear()
+        if stages.kept is not None:
+            stages.kept.results_of_phases = survey.executor
         return _map_of(survey, ground, image_path, settings, stages, corrections)
     except BaseException:
         if stages.kept is not None:
