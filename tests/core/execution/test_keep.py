@@ -89,11 +89,11 @@ def test_phases_that_read_from_files_are_run_again_unless_they_say_that_these_ar
 
 def test_a_window_whose_runs_asked_twice_as_much_as_the_first_begins_anew():
     window, kept, freed = KeptRun(), Keep(Asked()), []
-    window.begin()
+    window.wanted = True
     for count in (2, 4, 5):
         assert window.take()
-        window.results_of_phases = kept
-        window.keep("survey", "the same", "points", lambda: freed.append("points"))
+        window.phases, window.free = kept, lambda: freed.append("points")
+        window.keep("survey", "the same", "points")
         results(kept, range(count))
         window.give_back()
         assert window.known("survey", "the same") == (not freed) == (count < 5)
