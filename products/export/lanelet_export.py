@@ -14,7 +14,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
-from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
+from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, PATTERN_OF_WAY, Lanelet, Way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
 from .xml_tree import file_text
@@ -24,8 +24,7 @@ HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means 
 THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
 SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
 PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
-SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
-                      "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
+SUBTYPE_OF_PATTERN = {pattern: subtype for subtype, pattern in PATTERN_OF_WAY.items()} | {"double": "solid_solid"}
 TURN = 0.5              # rad from which a way through a junction is a turn
 
 

@@ -172,11 +172,7 @@ class _Moves:
 
 def replace_points(survey: Any, moves: Any, progress: Progress = Progress()) -> None:
     """Move the points of a Survey within its store; `moves` : as of `_Moves`."""
-    folder = survey.store.folder
-    before = list(folder.iterdir()) if folder else []
-    survey.put_in_order(folder, survey.executor, progress, _Moves(survey.frame, moves))
-    for file in before:
-        file.unlink()
+    survey.put_in_order(survey.store.folder, survey.executor, progress, _Moves(survey.frame, moves))
 
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
