@@ -16,7 +16,6 @@ from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
 from .steps import PlanSteps
-from .tracking import LineEnds
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -30,6 +29,13 @@ def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[d
             rows[:, 2] -= expected_height(survey, road, rows[:, 0])
         main[side] = rows
     return main, int(curbs.chain.max(initial=-1)) + 1
+
+
+def usual_height(curb_points: CurbPoints) -> float:
+    """m, height of the curbs of a road as they are where nothing lowers them; NaN where none was measured."""
+    heights = curb_points.height[(curb_points.part == "bottom") & (curb_points.status == "measured")]
+    heights = heights[np.isfinite(heights)]
+    return float(np.quantile(heights, RETURN.full_height)) if len(heights) else np.nan
 
 
 class SearchLimit:
@@ -162,29 +168,8 @@ class CurbLines:
         self.lines = lines
 
     @cached_property
-    def segments(self) -> np.ndarray:
-        """(S, 4) x, y of the beginning of each segment, and how far it leads in x and y."""
-        parts = [np.c_[x[:-1], y[:-1], np.diff(x), np.diff(y)] for x, y in self.lines if len(x) > 1]
-        return np.concatenate([np.empty((0, 4)), *parts])
-
-    def segments_about(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
-        """(K, 4) those segments that begin within a distance of the box about (N,) places, in their order."""
-        inside = [(at >= places.min() - distance) & (at <= places.max() + distance) for at, places in zip(self.segments.T, (x, y))]
-        return self.segments[inside[0] & inside[1]]
-
-    @cached_property
-    def ends(self) -> np.ndarray:
-        """(2 L, 4) x, y and the direction out of the line of both ends of every line; its last metre gives the direction."""
-        ends = LineEnds.of([(x, y, np.zeros(len(x))) for x, y in self.lines], 1.0)
-        return np.concatenate([ends.heads, ends.tails])[:, [0, 1, 3, 4]]
-
-    @cached_property
     def _tips(self):
-        return cKDTree(self.ends[:, :2])
-
-    def ends_about(self, place: np.ndarray, distance: float) -> np.ndarray:
-        """(K, 4) those of the ends that lie within a distance of a place, (2,) m."""
-        return self.ends[self._tips.query_ball_point(place, distance)]
+        return cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[x, y][[0, -1]] for x, y in self.lines)]))
 
     def end_distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """(N,) m from (N,) places to the nearest end of any line, infinite where there is none."""
@@ -194,9 +179,7 @@ class CurbLines:
     def _tree(self):
         return shapely.STRtree([shapely.linestrings(x, y) for x, y in self.lines if len(x) > 1])
 
-    def distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(N,) m from (N,) places to the nearest line; there must be one."""
+    def distance(self, x: np.ndarray, y: np.ndarray) -> float:
+        """m from (N,) places to the nearest line, the median; infinite where there is none."""
         (row, _), distance = self._tree.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
-        result = np.full(len(x), np.inf)
-        result[row] = distance
-        return result
+        return float(np.median(distance)) if len(row) else np.inf
