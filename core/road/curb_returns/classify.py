@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ...survey.frame.road import Road
@@ -16,7 +17,7 @@ from ..common.sides import SIDE_SIGNS
 from ..common.tracking import is_clean, is_road
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .main_curbs import CurbLines, SearchLimit
+from .main_curbs import SearchLimit, line_tree, median_distance, tips_of
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 
@@ -93,20 +94,20 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     """
     if not chains:
         return []
-    other_lines = CurbLines(elsewhere)
+    other_lines = line_tree(elsewhere)
     mains = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in mains.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in mains]
-    main_ends, linked = CurbLines([(x, y) for _, (x, y, _) in runs]), PlanSteps.join([PlanSteps.none(), *(steps[chain.steps] for chain in chains)])
+    tips, linked = tips_of(runs), PlanSteps.join([PlanSteps.none(), *(steps[chain.steps] for chain in chains)])
     result, separate = list(mains.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
-            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], main_ends)
+            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], tips)
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
-    known = CurbLines([*((x, y) for _, (x, y, _) in runs), *((curb.steps.x, curb.steps.y) for curb in result), *elsewhere])
+    known = line_tree([*((x, y) for _, (x, y, _) in runs), *((curb.steps.x, curb.steps.y) for curb in result), *elsewhere])
     return result + _of_the_road(separate, known, usual)
 
 
@@ -138,12 +139,12 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
 def _of_the_road(apart, known, usual):
     """Of lines apart those that are curbs of this road: its curbs are of one height; an island that goes on for long may have another.
 
-    known : CurbLines, the curbs that are known; usual : m, height of the road's own curbs, NaN where there are none
+    known : tree of the curbs that are known; usual : m, height of the road's own curbs, NaN where there are none
     """
     off = {id(curb): abs(np.log(np.median(curb.steps.height) / usual)) for curb in apart}
     islands = [curb for curb in apart if curb.kind == "island"]
     corners = [curb for curb in apart if curb.kind == "corner" and off[id(curb)] <= RETURN.max_height_step
-               and known.distance(curb.steps.x, curb.steps.y) > RETURN.outline_margin]
+               and median_distance(known, curb.steps.x, curb.steps.y) > RETURN.outline_margin]
     least = [CURBS.min_faint_length if off[id(curb)] > RETURN.max_height_step else RETURN.min_island_length for curb in islands]
     return corners + _long_islands(islands, np.array(least))
 
@@ -157,7 +158,7 @@ def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
     out = SIDE_SIGNS[side] * (line_steps.ny * np.cos(line.heading(s)) - line_steps.nx * np.sin(line.heading(s)))
     if chain.closed or not free.any() or np.ptp(s[free]) < CURBS.min_curb_length or np.median(out) < RETURN.min_parallel_cosine \
             or np.mean(np.isfinite(falls[chain.steps])) >= RETURN.min_island_share \
-            or elsewhere.distance(line_steps.x, line_steps.y) <= RETURN.outline_margin:
+            or median_distance(elsewhere, line_steps.x, line_steps.y) <= RETURN.outline_margin:
         return None
     return CurbReturn(line_steps, s, d, side, "main")
 
@@ -182,20 +183,20 @@ def _straight_part(curb):
 
 
 def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
-                          runs: CurbLines) -> list[CurbReturn]:
+                          tips: cKDTree) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
     curb : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
     limit : SearchLimit of that side
-    runs : CurbLines, the main curbs
+    tips : ends of the main curbs
     """
     along = _road_cosine(curb, s, line)
     if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
                                                                        np.nanmax(s) - RETURN.main_curb_overlap):
         return [CurbReturn(curb, s, d, side, "main")]
-    near = runs.end_distances(curb.x[[0, -1]], curb.y[[0, -1]])
+    near = tips.query(np.c_[curb.x, curb.y][[0, -1]])[0]
     # in order from the main curb outward
     order = np.arange(len(curb)) if near[0] <= near[1] else np.arange(len(curb))[::-1]
     cut = len(curb) if max(near) <= CURBS.max_joined_gap else _where_straight(curb, order, along)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 
 import numpy as np
 import shapely
@@ -155,31 +154,18 @@ class KnownPlaces:
 
 # Lines of curb in plan, among which those near a place are looked up: a long road has many of them.
 
-Line = tuple[np.ndarray, np.ndarray]
+
+def tips_of(runs: Sequence[tuple]) -> cKDTree:
+    """Local x, y of both ends of main curbs as of `main_runs`."""
+    return cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[x, y][[0, -1]] for _, (x, y, _) in runs)]))
 
 
-class CurbLines:
-    """Lines of curb.
+def line_tree(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> shapely.STRtree:
+    """Lines (x, y), each (N,) local m."""
+    return shapely.STRtree([shapely.linestrings(x, y) for x, y in lines if len(x) > 1])
 
-    lines : L lines (x, y), each (N,) local m, uphill on the right
-    """
 
-    def __init__(self, lines: Sequence[Line]):
-        self.lines = lines
-
-    @cached_property
-    def _tips(self):
-        return cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[x, y][[0, -1]] for x, y in self.lines)]))
-
-    def end_distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(N,) m from (N,) places to the nearest end of any line, infinite where there is none."""
-        return self._tips.query(np.c_[x, y])[0]
-
-    @cached_property
-    def _tree(self):
-        return shapely.STRtree([shapely.linestrings(x, y) for x, y in self.lines if len(x) > 1])
-
-    def distance(self, x: np.ndarray, y: np.ndarray) -> float:
-        """m from (N,) places to the nearest line, the median; infinite where there is none."""
-        (row, _), distance = self._tree.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
-        return float(np.median(distance)) if len(row) else np.inf
+def median_distance(lines: shapely.STRtree, x: np.ndarray, y: np.ndarray) -> float:
+    """m from (N,) places to the nearest line, the median; infinite where there is none."""
+    _, distance = lines.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
+    return float(np.median(distance)) if len(distance) else np.inf
