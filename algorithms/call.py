@@ -18,6 +18,7 @@ from ..core.lazy import gdal
 from .algorithm import MAP_LAYERS, WARNINGS, settings_class
 from .destinations import Unfinished, check_folder, check_suffix, check_writable, destination_path
 from .provenance import provenance_now, run_facts, sign_file, sign_report
+from .rooms import core
 from .survey_input import cloud_files, read_trajectory_source, survey_name, trajectory_path
 from .texts import tr
 from .vector_source import in_file_units, read_features
@@ -107,9 +108,7 @@ class Call:
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
-            from ..core.survey.trajectory.reader import read_trajectory
-
-            return read_trajectory(existing_file(str(path), self.label(name)), crs, columns=columns)
+            return core.survey.trajectory.reader.read_trajectory(existing_file(str(path), self.label(name)), crs, columns=columns)
         if columns.strip():
             raise RoadExtractionError(
                 tr("Columns are those of a text file; {label} is a layer, whose fields have names. Leave Columns empty, or choose the file.").format(
@@ -122,12 +121,10 @@ class Call:
         if not self.parameters.get(name):
             return None
 
-        from ..core.io.crs import parse_crs, place_of_raster, same_crs
-
         path = self.raster(name)
         with gdal_exceptions():
-            wkt = place_of_raster(open_raster(path))[1]
-        if not wkt or not crs or same_crs(parse_crs(wkt), parse_crs(crs)):
+            wkt = core.io.crs.place_of_raster(open_raster(path))[1]
+        if not wkt or not crs or core.io.crs.same_crs(core.io.crs.parse_crs(wkt), core.io.crs.parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
         with gdal_exceptions():

@@ -5,6 +5,7 @@ from dataclasses import replace
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from ..core.lazy import np, shapely
+from .rooms import core
 from .texts import tr
 
 POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unknown"
@@ -39,15 +40,11 @@ class VectorSource:
     @property
     def crs(self):
         """WKT, metric, of the CRS of `rows`; "" where unknown."""
-        from ..core.io.crs import in_metres
-
-        return in_metres(self.stored_crs)[0]
+        return core.io.crs.in_metres(self.stored_crs)[0]
 
     def rows(self, measures=False, check_validity=True):
         """The rows as `stored_rows` gives them, coordinates in metres; RoadExtractionError where a geometry cannot be that of a place."""
-        from ..core.io.crs import in_metres
-
-        units, rows = in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
+        units, rows = core.io.crs.in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
         return rows if units.metric else ((wkb and scaled_wkb(wkb, units.across, units.up), values) for wkb, values in rows)
 
     def kind_label(self, kind):
@@ -183,9 +180,7 @@ def _runs(wkb, at=0):
 
 def in_file_units(features):
     """A layer that is to be written, in the units of the survey's own CRS."""
-    from ..core.io.crs import as_in_file
-
-    wkt, units = as_in_file(features.crs)
+    wkt, units = core.io.crs.as_in_file(features.crs)
     if units.metric:
         return features
     if features.geometry_type.endswith("ZM"):
@@ -224,9 +219,7 @@ def _uint(wkb, at):
 
 def crs_to_write(features, driver):
     """WKT of the CRS that a file of an OGR driver gets; "" for none, for which a GeoPackage has an entry that is not geographic."""
-    from ..core.io.crs import UNDEFINED_CARTESIAN
-
-    return features.crs or (UNDEFINED_CARTESIAN if driver == "GPKG" and features.geometry_type != "None" else "")
+    return features.crs or (core.io.crs.UNDEFINED_CARTESIAN if driver == "GPKG" and features.geometry_type != "None" else "")
 
 
 def plain_value(value):

@@ -28,9 +28,9 @@ from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.in_step import in_step
+from ..execution.keep import WINDOW, Keep, KeptRun
 from ..execution.phase import digest
-from ..execution.remembered import RememberedResults
-from ..execution.work_folder import code_digest
+from ..execution.tasks import code_digest
 from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
 from ..intensity.tiled_image import TiledImage
@@ -60,7 +60,6 @@ from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 from ..survey.weights import FRAME
-from .kept_run import WINDOW, KeptRun
 
 
 @dataclass(frozen=True)
@@ -167,7 +166,7 @@ def _open(files, trajectory, settings, execution, remembers, progress):
     """The survey, whose executor `remembers` results or not, and its ground, which is measured where it is asked for."""
     survey = open_survey(files, trajectory, settings, progress, execution)
     if remembers:
-        survey.executor = RememberedResults(survey.executor)
+        survey.executor = Keep(survey.executor)
     return survey, MeasuredGround(survey)
 
 
@@ -243,7 +242,6 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     if settings.correct:
         (result.road_points, result.intensity_report), pieces, scatter = stages.run(
             "intensity", "Correcting intensity …", _corrected, result.road_points, frame, settings.image, asphalt, depends=settings.image)
-    passing = executor.passing()
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
@@ -259,10 +257,10 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
-                            executor=passing, depends=settings.outliers)
+                            executor=executor, depends=settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
-                                     executor=passing, depends=settings.clusters)
+                                     executor=executor, depends=settings.clusters)
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges, readings = result.edges.densified(frame), result.corrections.taken(frame)

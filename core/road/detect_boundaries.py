@@ -93,7 +93,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
         part = progress.part(0.0, BOUNDARY.lattice_progress)
         # a later stage looks for edges of the pavement in the profiles of a ground that is kept
         lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
-                             survey.executor.passing(), part)
+                             survey.executor, part)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
                                  decimation=decimation if settings.method == "both" else None)
         searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
@@ -131,7 +131,7 @@ def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, s
     """
     points = points_by_method["both"] if "both" in points_by_method else next(iter(points_by_method.values()))
     boundaries = _RoadBoundaries(points, fit_road_edges(points, frame, settings, progress.part(0.0, BOUNDARY.curb_edges_progress),
-                                                        THREADS if survey is None else survey.executor.passing()))
+                                                        THREADS if survey is None else survey.executor))
     if "both" in points_by_method:
         first, second = (points_by_method[method] for method in METHODS)
         boundaries.edges, boundaries.differences = measure_agreement(boundaries.edges, first, second, frame)

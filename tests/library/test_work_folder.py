@@ -22,7 +22,7 @@ def edges(path):
 
 
 def finished_parts(work):
-    return [path for path in work.glob("phase-*/*.plain") if ".part" not in path.name]
+    return [path for path in work.glob("kept-*.plain") if ".part" not in path.name]
 
 
 def test_a_killed_run_that_is_begun_again_gives_what_an_undisturbed_one_gives(street, tmp_path):

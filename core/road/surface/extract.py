@@ -107,7 +107,7 @@ def carriageways(survey: Survey, edges: RoadEdges | None, settings: SurfaceSetti
         profiled = missing.reshape(-1, SURFACE.window_rows).any(axis=1).tolist()
         beside[road] = windows, profiled, stations, measured
         wanted += [(road, row, want) for row, want in zip(windows, profiled)]
-    in_step([ground.measured(wanted)], survey.executor.passing(), progress.part(0.0, SURFACE.measured_progress))
+    in_step([ground.measured(wanted)], survey.executor, progress.part(0.0, SURFACE.measured_progress))
     for k, (road, of_road) in enumerate(beside.items(), start=1):
         yield road, _carriageway(survey, road, settings, ground, *of_road)
         progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * k / len(beside))
@@ -161,7 +161,7 @@ def _take_points(survey, carriageways, road_points, counted, cubes, progress):
     `carriageways` : {road: Carriageway}
     """
     per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
-    executor, length = survey.executor.passing(), survey.store.section_length
+    executor, length = survey.executor, survey.store.section_length
     phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
     items = [(stretch, surface_about(carriageways[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(carriageways))]

@@ -337,7 +337,7 @@ class MeasuredGround:
 
     def cells(self, road: int) -> GroundCells:
         """The GroundCells of a whole road; those of all roads are measured together."""
-        in_step([self.measured_all(False)], self.survey.executor.passing())
+        in_step([self.measured_all(False)], self.survey.executor)
         rows = windows_of(self.survey, road)
         return self.windows(road, rows, [False] * len(rows))[0]
 
@@ -351,7 +351,7 @@ class MeasuredGround:
             cells : GroundCells of all windows
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
-        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor.passing())
+        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor)
         half = _ground_columns(SURFACE.column_width)
         cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
         for number, row in enumerate(rows):

@@ -40,6 +40,11 @@ def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarra
     return np.union1d(np.flatnonzero(np.r_[True, np.diff(np.floor(driven / step)) > 0]), [len(x) - 1])
 
 
+def runs_through(low: Sequence[float], high: Sequence[float], x: np.ndarray, y: np.ndarray, reach: float) -> bool:
+    """Whether a drive through (N,) positions comes within `reach` m of a box with the corners `low` and `high`."""
+    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
+
+
 def _moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_radius) -> np.ndarray:
     """(M,) indices of (N,) positions at least `step` metres from the previous one, so that position noise adds no length.
 

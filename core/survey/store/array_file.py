@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import mmap
 import os
-import struct
 import tempfile
 import threading
 import weakref
@@ -21,10 +20,9 @@ from uuid import uuid4
 import numpy as np
 
 from ...common.parallel import freed_on_demand
-from ...execution.phase import checksum
+from ...execution.phase import SEAL, checksum
 from ..weights import STORE
 
-SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
 ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
 
 
@@ -86,7 +84,7 @@ class ArrayFile:
             raise OSError(error.errno, error.strerror, str(self.path or tempfile.gettempdir())) from error
 
     def seal(self) -> None:
-        """Fill the file up to its end and write a checksum of all bytes behind them, by which `files_are_whole` knows them again."""
+        """Fill the file up to its end and write a checksum of all bytes behind them, by which `is_sealed` knows them again."""
         self._file.truncate(self.end)
         self._file.seek(0)
         self._write(self.end, np.frombuffer(SEAL.pack(checksum(self._file, self.end)), np.uint8))
@@ -151,13 +149,3 @@ def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
     finally:
         file.close()
         unfinished.unlink(missing_ok=True)
-
-
-def files_are_whole(folder: Path) -> bool:
-    """Whether all files of `new_file` in a folder are as they were written, which they may not be after the power failed."""
-    for path in folder.glob("points-*.bin"):
-        with open(path, "rb", buffering=0) as file:
-            end = os.fstat(file.fileno()).st_size - SEAL.size
-            if end < 0 or checksum(file, end) != SEAL.unpack(file.read(SEAL.size))[0]:
-                return False
-    return True
