@@ -24,7 +24,7 @@ NUMBERS = {
     "core/io": 5,
     "core/curves": 9,
     "core/survey": 76,
-    "core/road": 18,
+    "core/road": 17,
     "core/intensity": 12,
     "core/markings": 61,
     "core/driving": 5,
