@@ -247,7 +247,8 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
         tasks = [new[k:k + IMAGE.tiles_per_task] for k in range(0, len(new), IMAGE.tiles_per_task)]
         phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
-            *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)))
+            *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)),
+                      state=(lambda task: [image.states[tile] for tile, _ in task]) if executor.folder else None)   # in memory lie the pixels already
         for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
             for tile in filter(None, tiles):
                 image.put(*tile)
