@@ -131,8 +131,10 @@ class Keep(Executor):
         path, texts = self._path(name), []
         value = read_plain(path, texts.append)
         named = set(POINTS.findall(texts[0]))
-        places = [place for file in named - self._whole.keys() for place in (self.folder / file, *self.folder.glob(f"*/{file}"))]
-        self._whole.update({place.name: place for place in places if is_sealed(place)})
+        for file in named - self._whole.keys():   # the folder of a long road has thousands of them: it is not looked through for each
+            beside = self.folder / file
+            places = [beside] if beside.exists() else self.folder.glob(f"*/{file}")
+            self._whole.update({place.name: place for place in places if is_sealed(place)})
         if not named <= self._whole.keys():
             raise OSError("points are gone or damaged")
         for used in (path, *map(self._whole.get, named)):

@@ -185,7 +185,7 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
                             survey=survey, ground=ground, depends=settings.edges)
-    surface_between = partial(extract_road_surface, settings=settings.surface, ground=ground, counted=True)
+    surface_between = partial(extract_road_surface, settings=settings.surface, ground=ground)
     made = stages.run("surface", "Extracting the road surface …", surface_between, survey, boundaries.edges, depends=settings.surface)
     asphalt = None
     if survey.has_intensity and settings.correct:
