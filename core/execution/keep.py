@@ -80,13 +80,8 @@ class Keep(Executor):
             return
         try:
             names = self._names(phase, items)
-            missing = {name: k for k, name in enumerate(names) if name not in self._results and not (self.folder and self._path(name).exists())}
-            rows = list(missing.values())
-            if self.work is not None and len(rows) < len(names):
-                progress.info(f"{len(names) - len(rows)} of {len(names)} parts of the work were finished by an earlier run.")
-            files = [self._path(name) for name in missing] if self.folder else ()
-            few = self.work is None and (2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items)
-            made = (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
+            missing = {name: k for k, name in enumerate(names) if not self._is_kept(name)}
+            made = self._made(phase, items, missing, len(names), progress)
             for k, name in enumerate(names):
                 if name not in missing:
                     yield self._kept(name, phase, items[k])
@@ -100,6 +95,15 @@ class Keep(Executor):
             raise self.disk_error(error) from error
         progress.report(1.0)
 
+    def _made(self, phase, items, missing, count, progress):
+        """The results of the items of a phase that are missing of `count`: {name: number of the item}."""
+        rows = list(missing.values())
+        if self.work is not None and len(rows) < count:
+            progress.info(f"{count - len(rows)} of {count} parts of the work were finished by an earlier run.")
+        files = [self._path(name) for name in missing] if self.folder else ()
+        few = self.work is None and (2 * len(rows) < count or self._first and len(rows) <= EXECUTION.few_items)
+        return (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
+
     def _names(self, phase, items):
         """The hash of what each item depends on."""
         state = phase.state or (lambda item: None)
@@ -112,6 +116,9 @@ class Keep(Executor):
 
     def _path(self, name):
         return self.folder / f"kept-{name}.plain"
+
+    def _is_kept(self, name):
+        return name in self._results if self.folder is None else self._path(name).exists()
 
     def _kept(self, name, phase, item):
         """A result that is kept; what cannot be read is made again."""
