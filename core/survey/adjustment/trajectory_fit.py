@@ -44,14 +44,11 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     progress : Progress, which hears one warning for each thing that does not fit
     """
     shape = shaped_trajectory(clean_trajectory(trajectory))
-    for warning in shape.said:
-        progress.warn(warning)
+    progress.warn_all(shape.said)
     unmoved = shape.trajectory if shape.said else trajectory
-    way = shape.trajectory.x, shape.trajectory.y
-    files = [file for file in files if file.count and runs_through(file.minimum, file.maximum, *way, FRAME.corridor)]
-    if not trajectory.has_time or not files or not all(file.has_time for file in files):
+    sample = _sample_along(files, shape.trajectory, scanner_field)
+    if sample is None:
         return _FittedTrajectory(unmoved, shape.sigma, False)
-    sample = read_places(files, scanner_field)
     if (far := _far_away(sample, shape.trajectory)) > ESTIMATE.farthest_median:
         progress.warn(f"Half of the points lie more than {far:.0f} m from the trajectory; a vehicle on the road sees half within "
                       f"{ESTIMATE.farthest_median:.0f} m. Check that cloud and trajectory are of one drive, and neither is flown nor mirrored.")
@@ -69,6 +66,12 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         mountings = _met(scanner_mountings(sample, level))
     moved, left = _on_way(level, mountings, progress)
     return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, float(np.hypot(shape.sigma, left)), True)
+
+
+def _sample_along(files, trajectory, scanner_field):
+    """The points of `read_places` of the files that a trajectory runs through; None where there are none, or not all have times."""
+    near = [file for file in files if file.count and runs_through(file.minimum, file.maximum, trajectory.x, trajectory.y, FRAME.corridor)]
+    return read_places(near, scanner_field) if trajectory.has_time and near and all(file.has_time for file in near) else None
 
 
 def _far_away(sample, trajectory):

@@ -396,25 +396,8 @@ def _read_track(path: Path) -> list[TableColumn]:
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
     """
-    rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
-    whens = []
     try:
-        with open(path, "rb") as file:
-            if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
-                raise ValueError("it declares entities of its own")
-        for _, element in iterparse(path):
-            name, text = _local(element), (element.text or "").strip()
-            if name in ("trkpt", "rtept", "wpt"):
-                parts = {_local(child): (child.text or "").strip() for child in element}
-                rows[name].append([element.get("lon", ""), element.get("lat", ""), parts.get("ele", ""), parts.get("time", "")])
-            elif name == "when":
-                whens.append(text)
-            elif name == "coord":
-                rows[name].append([*text.split(), "", "", ""][:4])
-            elif name == "coordinates":
-                rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
-            if name not in ("ele", "time"):
-                element.clear()
+        rows, whens = _positions(path)
     except ParseError as problem:
         raise RoadExtractionError(f"{path} cannot be read as XML ({problem}). Save the track again.") from problem
     except (LookupError, ValueError) as problem:
@@ -431,9 +414,26 @@ def _read_track(path: Path) -> list[TableColumn]:
     return columns if columns[3].first else columns[:3]
 
 
-def _local(element):
-    """The name of an element without its namespace."""
-    return element.tag.rpartition("}")[2]
+def _positions(path):
+    """{element: rows of [longitude, latitude, height, time], as texts} of a file, and the times of a track that has them by themselves."""
+    rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
+    whens = []
+    with open(path, "rb") as file:
+        if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
+            raise ValueError("it declares entities of its own")
+    for _, element in iterparse(path):
+        name, text = element.tag.rpartition("}")[2], "".join(element.itertext()).strip()
+        if name in ("trkpt", "rtept", "wpt"):
+            rows[name].append([element.get("lon", ""), element.get("lat", ""), element.findtext("{*}ele", ""), element.findtext("{*}time", "")])
+        elif name == "when":
+            whens.append(text)
+        elif name == "coord":
+            rows[name].append([*text.split(), "", "", ""][:4])
+        elif name == "coordinates":   # those of a line are one text
+            rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
+        if name not in ("ele", "time"):
+            element.clear()
+    return rows, whens
 
 
 def is_record(path: Path) -> bool:
