@@ -15,7 +15,7 @@ from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
-from ..estimation.samples import SAMPLED_LAYERS
+from ..estimation.samples import SAMPLED_LAYERS, thinned
 from ..frame.road_frame import decimate_by_distance, runs_through
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
@@ -286,10 +286,8 @@ def _in_vehicle_frame(sample, trajectory, stretch):
     # by scanner, then by time, as the sample is
     driven = driven[np.argsort(sample.scanner[driven], kind="stable")]
     windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / VEHICLE.turns_window)])
-    begin = np.flatnonzero((np.diff(windows, axis=1, prepend=np.nan) != 0).any(axis=0))
-    size = np.diff(np.append(begin, len(driven)))
-    rank = np.arange(len(driven)) - np.repeat(begin, size)
-    used = np.repeat(size >= MIN_TURNS_POINTS, size) & (rank % np.repeat(-(-size // MAX_TURNS_POINTS), size) == 0)
+    group = np.cumsum((np.diff(windows, axis=1, prepend=windows[:, :1]) != 0).any(axis=0))
+    used = (np.bincount(group)[group] >= MIN_TURNS_POINTS) & thinned(group, MAX_TURNS_POINTS)
     rows = np.sort(driven[used])
     time, place = sample.time[rows], sample.place[rows]
     rays = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)

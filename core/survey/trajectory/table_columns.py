@@ -244,34 +244,28 @@ def _hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
     return np.array([-1.0 if letter in ("S", "W") else 1.0 for letter in letters])
 
 
-def _whole_minutes(values: np.ndarray) -> np.ndarray:
-    """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
-    size = np.where(np.isfinite(values), np.abs(values), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
-
-
-def _whole_seconds(values: np.ndarray) -> np.ndarray:
-    """(N,) numbers ddmm.mmmm of numbers in which degrees, minutes and seconds are written together, ddmmss.ss."""
-    size = np.abs(values)
+def _unpacked(values: np.ndarray, parts: int = 1) -> np.ndarray:
+    """(N,) degrees of numbers in which degrees and minutes are written together, ddmm.mmmm (NMEA 0183), or seconds as a second part, ddmmss.ss."""
     # 1e-7 s are 3 µm on the ground, and more than what doubles lose in 1800000
-    size = np.where(np.isfinite(size), np.round(size, 7), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+    size = np.where(np.isfinite(values), np.abs(values) if parts == 1 else np.round(np.abs(values), 7), np.nan)
+    for _ in range(parts):
+        size = np.floor(size / 100.0) + size % 100.0 / 60.0
+    return np.copysign(size, values)
 
 
 def angle_of(columns: Sequence[TableColumn], k: int, most: float) -> np.ndarray:
     """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
     column = columns[k]
-    if not column.holds_texts and column.unit.name == "packed minutes":
-        return _whole_minutes(column.values)
-    if not column.holds_texts and column.unit.name == "packed seconds":
-        return _whole_minutes(_whole_seconds(column.values * column.unit.factor))
+    packed_parts = {"packed minutes": 1, "packed seconds": 2}.get(column.unit.name, 0)
+    if packed_parts and not column.holds_texts:
+        return _unpacked(column.values * column.unit.factor, packed_parts)
     values = _degrees(column)
     sides = [_hemisphere_signs(column.written()) for column in (*columns[k + 1:k + 2], *columns[max(k - 1, 0):k]) if column.holds_texts]
     signs = next((signs for signs in sides if signs is not None), None)
     if signs is None:
         return values
     packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
-    return np.where(signs < 0, -1.0, 1.0) * np.abs(_whole_minutes(values) if packed else values)
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(_unpacked(values) if packed else values)
 
 
 def _degrees(column):
@@ -365,7 +359,7 @@ def _place_columns(text, number):
     for axis in ("lat", "lon"):
         if f"{axis}_side" in text:
             signs = _hemisphere_signs(text[f"{axis}_side"])
-            number[axis] = _whole_minutes(number[axis]) * (1.0 if signs is None else signs)
+            number[axis] = _unpacked(number[axis]) * (1.0 if signs is None else signs)
         number[axis] = np.where(bad, np.nan, number[axis])
     if "geoid" in number and np.isfinite(number["geoid"]).any():
         number["z"] = number["z"] + number["geoid"]
