@@ -121,7 +121,9 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _say_left_out(files, frame, read, settings, progress)
     height = float(np.mean(list(read.heights.values())))
     feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
-    survey = _survey_of(files, frame, read, settings, crs, progress)
+    total, (scanner_field, scanners) = sum(file.count for file in files), read.summary.census.choose(settings.scanner_field)
+    survey = Survey(files, frame, read.store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest, has_time,
+                    dict(read=total, kept=read.store.count, outside=total - read.store.count), above_road=settings.above_road)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
@@ -145,14 +147,6 @@ def _intensity_source(samples, settings, one_scale, progress):
     for note in filter(None, (coarse_note, one_scale, intensity_note)):
         progress.warn(note)
     return intensity, rounding
-
-
-def _survey_of(files, frame, read, settings, crs, progress):
-    """The Survey of points as they were read."""
-    total, store = sum(file.count for file in files), read.store
-    scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
-    return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
-                  frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.ndimage import binary_dilation
 
 from ...common.arrays import Rows
 from ...common.progress import Progress
@@ -189,10 +190,7 @@ def _reached(poses, good):
     reached = np.zeros(good.shape, bool)
     for drive in poses.drives:
         rows = slice(drive.first, drive.first + drive.count - 3)
-        total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[rows], axis=0)])
-        places = np.arange(drive.count - 3)
-        low, high = np.maximum(places - RAYS.reach, 0), np.minimum(places + RAYS.reach + 1, drive.count - 3)
-        reached[rows] = total[high] > total[low]
+        reached[rows] = binary_dilation(good[rows], np.ones((2 * RAYS.reach + 1, 1)))
     return reached
 
 

@@ -277,11 +277,8 @@ def _agreeing_headings(sample, time, others, pairs):
     """[(by what the likeliest is the least, ..., pair, heading column)]: pairs of coordinates with the headings that confirm them."""
     agreeing = []
     for a, b, unit in pairs:
-        x, y = sample[:, a].copy(), sample[:, b].copy()
-        if unit != "metres":
-            scale = TRAJECTORY.metres_per_degree * (np.degrees(1.0) if unit == "radians" else 1.0)
-            middle = np.nanmedian(y) * (1.0 if unit == "radians" else np.pi / 180)
-            x, y = x * scale * np.cos(middle), y * scale
+        per_unit = np.degrees(1.0) if unit == "radians" else 1.0
+        x, y = rough_metres(sample[:, a] * per_unit, sample[:, b] * per_unit, "" if unit == "metres" else "EPSG:4326")
         for h in others:
             if h in (a, b):
                 continue
