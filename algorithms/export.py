@@ -20,14 +20,6 @@ from .vector_source import LINE
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
 
 
-def add_map_layers(algorithm):
-    """The layers that a map is read into, and their CRS."""
-    algorithm.add_input("crs", "CRS", optional=True)
-    algorithm.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
-    for name in READ_LAYERS:
-        algorithm.add_map_sink(name, optional=True)
-
-
 def add_any_map(algorithm):
     """A file of either format, and the CRS that it is read in."""
     algorithm.add_input("file", "INPUT", file_filter="HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)")
@@ -418,7 +410,10 @@ class ImportOpenDrive(Algorithm):
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter=f"{self.FILES};;All files (*.*)")
-        add_map_layers(self)
+        self.add_input("crs", "CRS", optional=True)
+        self.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+        for name in READ_LAYERS:
+            self.add_map_sink(name, optional=True)
 
     def work(self, call, progress):
         return write_map_layers(call, map_layers(call, progress, self.LANELETS), progress)

@@ -32,6 +32,7 @@ from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
 from ..algorithms.call import Call, existing_file, time_left
 from ..algorithms.destinations import at_path, destination_path
+from ..algorithms.rooms import core
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress, RemainingTime
@@ -192,14 +193,12 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
-        from ..core.io.crs import in_metres
-
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         text = self.parameters.get(name)
         if isinstance(text, str) and text and not crs.isValid():
             raise RoadExtractionError(
                 tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=text))
-        return in_metres(crs_text(crs))[0]
+        return core.io.crs.in_metres(crs_text(crs))[0]
 
     def connection(self, name):
         kept, chosen = QgsProviderRegistry.instance().providerMetadata("postgres").dbConnections(False), self.value(name)
