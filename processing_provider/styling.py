@@ -134,7 +134,7 @@ def second_reading(other: str) -> str:
     """A value of the field `other` in words."""
     try:
         reading = json.loads(other)
-        lanes = [tr("a lane of {width:.1f} m {direction}").format(width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
+        lanes = [tr("a lane of {width:.1f} m {direction}", width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
                  for lane in reading.get("lanes", ())]
         if lanes:
             return ", ".join(lanes)
