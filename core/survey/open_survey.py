@@ -19,7 +19,7 @@ from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, read_files
-from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance
+from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance, runs_through
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
@@ -32,7 +32,7 @@ from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import FRAME, READING, STORE, VEHICLE
+from .weights import FRAME, READING, STORE, TRAJECTORY, VEHICLE
 
 READING_FOLDER = "read"   # folder of points as they were read, in no order
 
@@ -78,10 +78,14 @@ def _survey_of_run(executor, read, progress):
 
     if not isinstance(executor, Keep):
         return read_here(progress)
-    states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in read[0]]
-    survey = survey_in_file(str(executor.made((states, *read[1:]), lambda progress: read_here(progress).contents(), progress)))
+    survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
     return survey
+
+
+def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
+    """Path, size and time of change of each file."""
+    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
 
 
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
@@ -341,33 +345,31 @@ def _check_extent(files, frame, crs, trajectory_crs, progress):
     ways = [np.c_[p.x, p.y][decimate_by_distance(p.x, p.y, FRAME.track_step)] for p in frame.passes]
     x, y = (np.concatenate(ways) + frame.origin[:2]).T
     reach = FRAME.corridor
-    away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
+    away = [file for file in filled if not runs_through(file.minimum, file.maximum, x, y, reach)]
     if len(away) == len(filled):
         raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} "
                                   f"to {y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
                                   f"{_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
     for file in away:
         ends = np.array(file.minimum), np.array(file.maximum)
-        if _runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
+        near = runs_through(*ends, x, y, TRAJECTORY.longest_step)
+        if not near or runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
             raise RoadExtractionError(f"The coordinates of {file.path} are of another kind than those of the other point clouds, through which the "
                                       f"trajectory runs. {_what_to_try(*ends, x, y, crs, trajectory_crs, reach)}")
     if away:
         progress.info(f"{len(away)} of {len(filled)} files lie beside the trajectory and give no points, such as {away[0].path}.")
 
 
-def _runs_through(low, high, x, y, reach):
-    """Does a drive come within `reach` m of a box?"""
-    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
-
-
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
-    if _runs_through(low, high, y, x, reach):
+    if runs_through(low, high, y, x, reach):
         return "In one of them x and y are exchanged: export the cloud with the easting as x, or name the trajectory's columns the other way round."
     if advice := _advice_on_units(low, high, x, y, crs, reach):
         return advice
-    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
+    if crs and runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
         return "The trajectory's longitude and latitude are exchanged: name its columns the other way round, and run again."
+    if not runs_through(low, high, x, y, TRAJECTORY.longest_step):
+        return f"They lie more than {TRAJECTORY.longest_step / 1000:.0f} km apart, as in two zones of a projection: reproject them to one CRS."
     if trajectory_crs:
         return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
@@ -376,11 +378,11 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
 
 def _advice_on_units(low, high, x, y, crs, reach):
     """The advice where cloud or trajectory seem to be in feet, in degrees, or counted from the centre of the earth; "" where they do not."""
-    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+    if any(runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
         return "The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in, or convert the cloud to metres."
-    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+    if any(runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         return "The trajectory's coordinates are the cloud's in feet: give it its CRS, as Import trajectory does, or convert it to metres."
     if np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
