@@ -25,7 +25,7 @@ from .tasks import code_digest, versions
 from .weights import EXECUTION
 
 POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name: they lie in the same folder, or in one within it
-OURS = re.compile(r"(kept|points|store|image)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
+OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
 
 
 def work_folder(path: str) -> Path:
