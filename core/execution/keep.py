@@ -19,14 +19,13 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import free_memory
 from ..common.progress import Progress, RememberedMessages
 from .phase import THREADS, Executor, Items, NoSource, Phase, digest, is_sealed, name_of, read_plain, write_plain
 from .tasks import code_digest, versions
 from .weights import EXECUTION
 
 POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name: they lie in the same folder, or in one within it
-OURS = re.compile(r"(kept|points|store|image)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
+OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
 
 
 def work_folder(path: str) -> Path:
@@ -174,17 +173,10 @@ class Keep(Executor):
 
     @property
     def full(self) -> bool:
-        """Whether so much is kept that the next run had better begin anew; asked between two runs of a window."""
+        """Whether so much is kept that the next run had better begin anew; asked after each run of a window."""
         count = len(self._results) if self.folder is None else sum(1 for _ in self.folder.glob("kept-*"))
         self._first = self._first or count
         return count > EXECUTION.runs_kept * self._first
-
-    def clear(self) -> None:
-        """Keep nothing of what was made, and remove its files, which nobody reads."""
-        self._results, self._whole, self._first = {}, {}, 0
-        free_memory()   # Windows removes no file that is held open
-        for path in [*self.folder.glob("kept-*.plain"), *self.folder.glob("points-*.bin")] if self.folder is not None else ():
-            path.unlink(missing_ok=True)
 
     def discard(self, files: Sequence[Path]) -> None:
         if self.work is None:
@@ -201,23 +193,21 @@ class Keep(Executor):
 
 
 class KeptRun:
-    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
+    """The last result of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
+
+    phases, free : the Keep of these runs, and what frees the disk space of their points
+    """
 
     def __init__(self) -> None:
         self.wanted, self._in_use = False, threading.Lock()
-        # {stage: (digest, result, what frees its disk space, whether the next one is made from it)}
-        self._results: dict[str, tuple[str, Any, Callable[[], None], bool]] = {}
-        self._renewed: dict[str, tuple[Any, Callable[[], None]]] = {}   # results that the next ones are made from
-
-    def begin(self) -> None:
-        """Keep runs from now on."""
-        self.wanted = True
+        self.phases: Keep | None = None
+        self.free: Callable[[], None] = lambda: None
+        self._results: dict[str, tuple[str, Any]] = {}
 
     def end(self) -> None:
         """Keep no run any more, and free the disk space of the last one."""
         self.wanted = False
         if self.take():
-            self.drop_from("")
             self.give_back()
 
     def take(self) -> bool:
@@ -225,39 +215,32 @@ class KeptRun:
         return self._in_use.acquire(blocking=False)
 
     def give_back(self) -> None:
-        if not self.wanted:
-            self.drop_from("")
+        if not self.wanted or self.phases is not None and self.phases.full:
+            self.drop()
         self._in_use.release()
 
-    def known(self, stage: str, digest: str) -> bool:
-        """Whether the result of a stage is here; if another one is, it goes, and so does all that came after it."""
-        if stage in self._results and self._results[stage][0] != digest:
-            self.drop_from(stage)
-        return stage in self._results
+    def drop(self) -> None:
+        """Let all results go, and free the disk space of the points."""
+        self.free()
+        self._results, self.phases, self.free = {}, None, lambda: None
 
-    def before(self, stage: str) -> Any:
-        """The last result of a stage that is renewed, which goes into the next one; None where there is none."""
-        return self._renewed.pop(stage, (None,))[0]
+    def known(self, stage: str, digest: str) -> bool:
+        """Whether the result of a stage is here; where that of the first stage is another one, all go."""
+        if stage in self._results and self._results[stage][0] == digest:
+            return True
+        if stage == next(iter(self._results), ""):
+            self.drop()
+        return False
 
     def result(self, stage: str) -> Any:
         return self._results[stage][1]
 
-    def keep(self, stage: str, digest: str, result: Any, free: Callable[[], None], renewed: bool = False) -> None:
-        """Keep the result of a stage. free : is called when it goes; renewed : it goes when the next one was made from it"""
-        self._results[stage] = digest, result, free, renewed
+    def before(self, stage: str) -> Any:
+        """The result of a stage that the next one is made from, and is no result any more; None where there is none."""
+        return self._results.pop(stage, ("", None))[1]
 
-    def drop_from(self, stage: str) -> None:
-        """Let the results of a stage and of those after it go, the last ones first; of all for "" """
-        for name in reversed(list(self._results)):
-            _, result, free, renewed = self._results.pop(name)
-            if renewed:
-                self._renewed[name] = result, free
-            else:
-                free()
-            if name == stage:
-                return
-        while not stage and self._renewed:
-            self._renewed.popitem()[1][1]()
+    def keep(self, stage: str, digest: str, result: Any) -> None:
+        self._results[stage] = digest, result
 
 
-WINDOW = KeptRun()   # of the program's window, which calls its `begin`
+WINDOW = KeptRun()   # of the program's window, which wants it

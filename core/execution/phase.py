@@ -226,8 +226,8 @@ def _contents(value):
 
 def write_results(file: Any, value: Any, unfinished_in: Path | None = None) -> None:
     """Write the result of an item to a file, or those of a list of items to a list of files."""
-    for path, one in zip(file, value) if isinstance(file, list) else [(file, value)]:
-        write_plain(Path(path), one, unfinished_in)
+    for path, one in zip(paths_of(file), value if isinstance(file, list) else [value]):
+        write_plain(path, one, unfinished_in)
 
 
 def read_results(file: Any) -> Any:
@@ -392,11 +392,11 @@ class Threads(Executor):
         def kept(numbered):
             item, file = numbered
             result = phase.result(item)
-            write_results(file, result)
+            if keep:
+                write_results(file, result)
             return result
 
-        return ordered_map(kept, Items(len(items), lambda k: (items[k], keep[k])), progress, self.count) if keep else ordered_map(
-            phase.result, items, progress, self.count)
+        return ordered_map(kept, Items(len(items), lambda k: (items[k], keep[k] if keep else None)), progress, self.count)
 
 
 THREADS = Threads()

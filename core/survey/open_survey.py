@@ -78,10 +78,14 @@ def _survey_of_run(executor, read, progress):
 
     if not isinstance(executor, Keep):
         return read_here(progress)
-    states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in read[0]]
-    survey = survey_in_file(str(executor.made((states, *read[1:]), lambda progress: read_here(progress).contents(), progress)))
+    survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
     return survey
+
+
+def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
+    """Path, size and time of change of each file."""
+    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
 
 
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
