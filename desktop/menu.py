@@ -51,7 +51,7 @@ class Menu(QObject):
         self.actions = []
         self.dialog = self.designer = None  # kept, or Python would collect the open windows
         self.section = self.doubts = self.pairs = self.swipe = None
-        WINDOW.begin()
+        WINDOW.wanted = True
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon

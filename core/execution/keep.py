@@ -19,14 +19,13 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import free_memory
 from ..common.progress import Progress, RememberedMessages
 from .phase import THREADS, Executor, Items, NoSource, Phase, digest, is_sealed, name_of, read_plain, write_plain
 from .tasks import code_digest, versions
 from .weights import EXECUTION
 
-POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name: they lie in the same folder, or in one within it
-OURS = re.compile(r"(kept|points|store|image)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
+POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name, in the same folder
+OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
 
 
 def work_folder(path: str) -> Path:
@@ -65,7 +64,7 @@ class Keep(Executor):
         self.executor, self.work, self.folder = executor, work, work or executor.folder
         self._base: tuple[Any, ...] = code_digest(), versions()   # what all hashes depend on
         self._results: dict[str, Any] = {}   # in memory
-        self._whole: dict[str, Path] = {}   # files of points that were seen to be whole
+        self._whole: set[str] = set()   # files of points that were seen to be whole
         self._first = 0   # how many results there were after the first run
         # all but the work itself is that of the executor
         self.sees, self.forget, self.release, self.close = (  # type: ignore[method-assign]
@@ -82,12 +81,7 @@ class Keep(Executor):
         try:
             names = self._names(phase, items)
             missing = {name: k for k, name in enumerate(names) if not self._is_kept(name)}
-            rows = list(missing.values())
-            if self.work is not None and len(rows) < len(names):
-                progress.info(f"{len(names) - len(rows)} of {len(names)} parts of the work were finished by an earlier run.")
-            files = [self._path(name) for name in missing] if self.folder else ()
-            few = self.work is None and (2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items)
-            made = (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
+            made = self._made(phase, items, missing, len(names), progress)
             for k, name in enumerate(names):
                 if name not in missing:
                     yield self._kept(name, phase, items[k])
@@ -100,6 +94,15 @@ class Keep(Executor):
         except OSError as error:
             raise self.disk_error(error) from error
         progress.report(1.0)
+
+    def _made(self, phase, items, missing, count, progress):
+        """The results of the items of a phase that are missing of `count`: {name: number of the item}."""
+        rows = list(missing.values())
+        if self.work is not None and len(rows) < count:
+            progress.info(f"{count - len(rows)} of {count} parts of the work were finished by an earlier run.")
+        files = [self._path(name) for name in missing] if self.folder else ()
+        few = self.work is None and (2 * len(rows) < count or self._first and len(rows) <= EXECUTION.few_items)
+        return (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
 
     def _names(self, phase, items):
         """The hash of what each item depends on."""
@@ -132,11 +135,10 @@ class Keep(Executor):
         path, texts = self._path(name), []
         value = read_plain(path, texts.append)
         named = set(POINTS.findall(texts[0]))
-        places = [place for file in named - self._whole.keys() for place in (self.folder / file, *self.folder.glob(f"*/{file}"))]
-        self._whole.update({place.name: place for place in places if is_sealed(place)})
-        if not named <= self._whole.keys():
+        self._whole.update(file for file in named - self._whole if is_sealed(self.folder / file))
+        if not named <= self._whole:
             raise OSError("points are gone or damaged")
-        for used in (path, *map(self._whole.get, named)):
+        for used in (path, *(self.folder / file for file in named)):
             with suppress(OSError):   # of another user
                 os.utime(used)
         return value
@@ -162,7 +164,7 @@ class Keep(Executor):
     def _trim(self):
         """Remove what no run has used for a day, the oldest first, while the folder holds more than is free on its disk."""
         files = []
-        for path in self.work.rglob("*"):
+        for path in self.work.iterdir():
             with suppress(OSError):   # another run may have removed it
                 files += [(path.stat().st_mtime, path.stat().st_size, path)] if OURS.fullmatch(path.name) else []
         excess = sum(size for _, size, _ in files) - shutil.disk_usage(self.work).free
@@ -174,24 +176,10 @@ class Keep(Executor):
 
     @property
     def full(self) -> bool:
-        """Whether so much is kept that the next run had better begin anew; asked between two runs of a window."""
+        """Whether so much is kept that the next run had better begin anew; asked after each run of a window."""
         count = len(self._results) if self.folder is None else sum(1 for _ in self.folder.glob("kept-*"))
         self._first = self._first or count
         return count > EXECUTION.runs_kept * self._first
-
-    def clear(self) -> None:
-        """Keep nothing of what was made, and remove its files, which nobody reads."""
-        self._results, self._whole, self._first = {}, {}, 0
-        free_memory()   # Windows removes no file that is held open
-        for path in [*self.folder.glob("kept-*.plain"), *self.folder.glob("points-*.bin")] if self.folder is not None else ():
-            path.unlink(missing_ok=True)
-
-    def discard(self, files: Sequence[Path]) -> None:
-        if self.work is None:
-            self.executor.discard(files)
-
-    def in_threads(self) -> Executor:
-        return Keep(THREADS, self.work)
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         return self.executor.disk_error(error) if self.work is None else work_folder_error(self.work, error)
@@ -201,23 +189,21 @@ class Keep(Executor):
 
 
 class KeptRun:
-    """The results of the stages of one run, in their order, from when `begin` is called until `end`; used by one run at a time."""
+    """The last result of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
+
+    phases, free : the Keep of these runs, and what frees the disk space of their points
+    """
 
     def __init__(self) -> None:
         self.wanted, self._in_use = False, threading.Lock()
-        # {stage: (digest, result, what frees its disk space, whether the next one is made from it)}
-        self._results: dict[str, tuple[str, Any, Callable[[], None], bool]] = {}
-        self._renewed: dict[str, tuple[Any, Callable[[], None]]] = {}   # results that the next ones are made from
-
-    def begin(self) -> None:
-        """Keep runs from now on."""
-        self.wanted = True
+        self.phases: Keep | None = None
+        self.free: Callable[[], None] = lambda: None
+        self._results: dict[str, tuple[str, Any]] = {}
 
     def end(self) -> None:
         """Keep no run any more, and free the disk space of the last one."""
         self.wanted = False
         if self.take():
-            self.drop_from("")
             self.give_back()
 
     def take(self) -> bool:
@@ -225,39 +211,32 @@ class KeptRun:
         return self._in_use.acquire(blocking=False)
 
     def give_back(self) -> None:
-        if not self.wanted:
-            self.drop_from("")
+        if not self.wanted or self.phases is not None and self.phases.full:
+            self.drop()
         self._in_use.release()
 
-    def known(self, stage: str, digest: str) -> bool:
-        """Whether the result of a stage is here; if another one is, it goes, and so does all that came after it."""
-        if stage in self._results and self._results[stage][0] != digest:
-            self.drop_from(stage)
-        return stage in self._results
+    def drop(self) -> None:
+        """Let all results go, and free the disk space of the points."""
+        self.free()
+        self._results, self.phases, self.free = {}, None, lambda: None
 
-    def before(self, stage: str) -> Any:
-        """The last result of a stage that is renewed, which goes into the next one; None where there is none."""
-        return self._renewed.pop(stage, (None,))[0]
+    def known(self, stage: str, digest: str) -> bool:
+        """Whether the result of a stage is here; where that of the first stage is another one, all go."""
+        if stage in self._results and self._results[stage][0] == digest:
+            return True
+        if stage == next(iter(self._results), ""):
+            self.drop()
+        return False
 
     def result(self, stage: str) -> Any:
         return self._results[stage][1]
 
-    def keep(self, stage: str, digest: str, result: Any, free: Callable[[], None], renewed: bool = False) -> None:
-        """Keep the result of a stage. free : is called when it goes; renewed : it goes when the next one was made from it"""
-        self._results[stage] = digest, result, free, renewed
+    def before(self, stage: str) -> Any:
+        """The result of a stage that the next one is made from, and is no result any more; None where there is none."""
+        return self._results.pop(stage, ("", None))[1]
 
-    def drop_from(self, stage: str) -> None:
-        """Let the results of a stage and of those after it go, the last ones first; of all for "" """
-        for name in reversed(list(self._results)):
-            _, result, free, renewed = self._results.pop(name)
-            if renewed:
-                self._renewed[name] = result, free
-            else:
-                free()
-            if name == stage:
-                return
-        while not stage and self._renewed:
-            self._renewed.popitem()[1][1]()
+    def keep(self, stage: str, digest: str, result: Any) -> None:
+        self._results[stage] = digest, result
 
 
-WINDOW = KeptRun()   # of the program's window, which calls its `begin`
+WINDOW = KeptRun()   # of the program's window, which wants it

@@ -6,7 +6,6 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 import time
@@ -33,7 +32,6 @@ from ..execution.phase import digest
 from ..execution.tasks import code_digest
 from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
-from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
 from ..markings.lines.curvature import marking_curvature
@@ -55,7 +53,7 @@ from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import CloudHeader, read_headers
-from ..survey.open_survey import SurveySettings, open_survey
+from ..survey.open_survey import SurveySettings, open_survey, states_of
 from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
@@ -146,11 +144,9 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     try:
         survey, ground = stages.run("survey", "Reading the survey …", _open, files, trajectory, settings.survey, settings.execution,
                                     stages.kept is not None,
-                                    depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
-                                    free=lambda opened: opened[0].store.close())
-        if stages.kept is not None and survey.executor.full:
-            stages.kept.drop_from("curbs")
-            survey.executor.clear()
+                                    depends=lambda: (code_digest(), states_of(files), trajectory, settings.survey, settings.execution))
+        if stages.kept is not None:
+            stages.kept.phases, stages.kept.free = survey.executor, survey.store.close
         return _map_of(survey, ground, image_path, settings, stages, corrections)
     except BaseException:
         if stages.kept is not None:
@@ -174,10 +170,6 @@ def _may_be_kept(files, execution):
     """Whether a run may be kept: where no work folder does so, no workers of others are held, and as much disk space is left as it takes."""
     taken = sum(file.count for file in files) * (SURVEY_POINT.itemsize + ROAD_POINT.itemsize)
     return not execution.work_folder and not execution.scheduler and shutil.disk_usage(tempfile.gettempdir()).free > 2 * taken
-
-
-def _states(paths):
-    return [(os.path.abspath(path), os.path.getsize(path), os.stat(path).st_mtime_ns) for path in paths]
 
 
 def _map_of(survey, ground, image_path, settings, stages, corrections):
@@ -246,7 +238,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path, pieces=pieces, depends=(settings.correct, settings.image),
-                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path) if image_path else None)
+                       renewed=True, again=lambda image: image.write(image_path) if image_path else None)
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
@@ -366,12 +358,11 @@ class Stages:
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
     def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, depends: Any = None,
-            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, renewed: bool = False,
-            **options: Any) -> Any:
+            again: Callable[[Any], None] = lambda result: None, renewed: bool = False, **options: Any) -> Any:
         """Run a stage: log its title, if any, call the function with its part of the progress, and return its result, or that of the last run.
 
         depends : plain values that the result depends on beside the stages before, or a function that gives them; None for a result that is not kept
-        free, again : what frees the disk space of a result that is kept, and what is done with one that is used again
+        again : what is done with a result that is used again
         renewed : whether the function takes what the last run gave as `before`, where that is another
         """
         share = self.shares[name]
@@ -390,7 +381,7 @@ class Stages:
                 options["before"] = kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
             if kept is not None:
-                kept.keep(name, self._digest, result, partial(free, result), renewed)
+                kept.keep(name, self._digest, result)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

@@ -81,6 +81,7 @@ NOTES = 9.0           # mm for the notes below profiles and sections
 ABOVE = 18.0          # mm above the title block for scale and arrow, where the legend takes their place
 GRID = 60.0           # mm between lines of the grid at least
 TICKS, LABELS = 5.0, 25.0   # mm between ticks and labels of stations at least
+MATCH = 50.0          # mm beside the road to which a match line reaches, with its text
 AXIS = "#b00020"
 ROWS = (0.28, 0.18, 0.18, 0.18, 0.18)   # of the title block's height
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
@@ -187,29 +188,29 @@ class _Pages:
         for sheet in self.sheets:
             self._add_sheet(sheet)
         heights = (tr("Heights in m: height system as stated"), "")
-        width, height, interval = self.frame.map.width(), self.frame.map.height() - NOTES, self.choice.section_interval
+        size, interval = (self.frame.map.width(), self.frame.map.height() - NOTES), self.choice.section_interval
         self._report()
-        drawn = [((tr("Longitudinal profile"), [(tr("Ground along the axis"), AXIS), heights]), *page) for page in (
-            profile_pages(self.axes, width, height, self.scale, len(self.sheets)) if self.choice.profile else ())]
+        profiles = profile_pages(self.axes, *size, self.scale, len(self.sheets)) if self.choice.profile else []
         self._report()
-        drawn += [((tr("Cross-sections"), [(tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]),
-                                           (tr("Marking line"), COLOURS["MARKING_LINES"]), (tr("Driving line"), COLOURS["DRIVING_LINES"]),
-                                           (tr("Ground"), DARK), (tr("Offsets in m from the axis, left positive"), ""), heights]), *page)
-                  for page in (section_pages(self.axes, self.lines, ground, interval, width, height) if interval else ())]
+        sections = section_pages(self.axes, self.lines, ground, interval, *size) if interval else []
+        drawn = [(profile, tr("Longitudinal profile"), [(tr("Ground along the axis"), AXIS), heights]) for profile in profiles]
+        drawn += [(section, tr("Cross-sections"), [
+            (tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
+            (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK), (tr("Offsets in m from the axis, left positive"), ""), heights])
+            for section in sections]
         pages: list = []
         for one in drawn:   # below the one before, where there is room
-            if pages and sum(drawing.height for _, drawing, _ in pages[-1]) + one[1].height <= height + 1e-6:
-                pages[-1].append(one)
-            else:
-                pages.append([one])
+            if not pages or sum(part[0][0].height for part in (*pages[-1], one)) > size[1] + 1e-6:
+                pages.append([])
+            pages[-1].append(one)
         for number, parts in enumerate(pages, 1):
             page, paper, y = self._new_page(), self._paper(self.frame), self.frame.map.y()
-            self._add_title_block(paper, page, self.frame, ", ".join(contents for (contents, _), _, _ in parts), f"{number} / {len(pages)}",
-                                  "; ".join(scale for _, _, scale in parts))
+            self._add_title_block(paper, page, self.frame, ", ".join(contents for _, contents, _ in parts), f"{number} / {len(pages)}",
+                                  "; ".join(scale for (_, scale), _, _ in parts))
             self._add_key_map(paper, page, None)
-            self._add_notes(paper, dict.fromkeys(note for (_, notes), _, _ in parts for note in notes))
+            self._add_notes(paper, dict.fromkeys(note for _, _, notes in parts for note in notes))
             self._add_drawing(paper, page)
-            for _, drawing, _ in parts:
+            for (drawing, _), _, _ in parts:
                 self._add_drawing(drawing, page, self.frame.map.x(), y)
                 y += drawing.height
 
@@ -467,7 +468,9 @@ class _Pages:
         per_mm = self.scale / 1000
         for match in sheet.matches:
             across = np.array([-math.sin(match.heading), math.cos(match.heading)])
-            ends = sheet.on_page(np.array([match.x, match.y]) + np.outer(self._reaches(match, across, sheet), across)) / per_mm
+            axis = min(self.axes, key=lambda one: np.hypot(*(one.places[:, :2] - (match.x, match.y)).T).min())
+            reach = axis.half_width + MATCH * per_mm
+            ends = sheet.on_page(np.array([match.x, match.y]) + np.outer([-reach, reach], across)) / per_mm
             line = shapely.clip_by_rect(shapely.LineString(ends), 0, 0, drawing.width, drawing.height)
             if line.is_empty:
                 continue
@@ -485,15 +488,6 @@ class _Pages:
             for end, ahead in ((top, 1), (bottom, -1)):
                 place = end + ahead * way / max(np.hypot(*way), 1e-9) * room + normal * 2.2
                 drawing.text(*place, text, 8.0, turned=turned, boxed=True, yields=True)
-
-    def _reaches(self, match, across, sheet):
-        """m to the right (negative) and left that a match line reaches: over the sheet, but not to another leg of its own road."""
-        most, place = sheet.width + sheet.height, np.array([match.x, match.y])
-        axis = min(self.axes, key=lambda one: np.hypot(*(one.places[:, :2] - place).T).min())
-        met = shapely.intersection(shapely.LineString(axis.places[:, :2]), shapely.LineString(place + np.outer([-most, most], across)))
-        offsets = (shapely.get_coordinates(met) - place) @ across
-        gap = 2 * axis.half_width
-        return [max([-most, *(offsets[offsets < -gap] + gap)]), min([most, *(offsets[offsets > gap] - gap)])]
 
     def _draw_stations(self, drawing, sheet):
         """The axis with a tick every 10 m (more at small scales) and stations beside the road."""

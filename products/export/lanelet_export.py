@@ -239,6 +239,7 @@ class _Drafting:
                 for name in last if lanes.type[rows[name]] != "connector"}
         borders = map(lanes.borders, range(len(lanes)))
         area = [shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
+        signs = [(sign, [name for name in names if ways.get(name)]) for sign, names in signs]
         waiting = {name for _, names in signs for name in names}
         stops = [way for way in self.draft.ways if way.tags["type"] == "stop_line"]
         for sign, names in signs:

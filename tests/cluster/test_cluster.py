@@ -88,12 +88,12 @@ def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_thr
     work, finished = work_folder(str(tmp_path / "work")), {}
 
     def kill():
-        finished.update({path: path.stat().st_mtime_ns for path in work.glob("kept-*.plain")})
+        finished.update({path: path.stat().st_ino for path in work.glob("kept-*.plain")})
         cluster.kill_a_worker()
 
     executor = AtPhase(Keep(cluster_of(cluster.address, False, work), work), phase, kill)
     assert numbers_of(boundaries(executor)) == by_threads
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
     assert not list(work.glob("run-*")) and not list(work.rglob("*.part*"))
 
 
@@ -307,9 +307,9 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
     assert not list(work.glob("run-*")) and not list(temporary.glob("lanewright-*/*"))
     if not work_folder:
         return
-    finished = {path: path.stat().st_mtime_ns for path in work.glob("kept-*.plain")}
+    finished = {path: path.stat().st_ino for path in work.glob("kept-*.plain")}
     run("detectboundaries", **inputs, WORK_FOLDER=work, SCHEDULER=cluster.address, ROAD_EDGES=result)
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
     run("detectboundaries", **inputs, ROAD_EDGES=tmp_path / "undisturbed.gpkg")
     assert edges(result) == edges(tmp_path / "undisturbed.gpkg") and edges(result)
 
@@ -347,13 +347,13 @@ def test_a_worker_that_is_killed_while_it_reads_costs_no_part_that_was_read(clus
 
     class Kill(Progress):
         def report(self, fraction):
-            found = {path: path.stat().st_mtime_ns for path in work.glob("kept-*.plain")}
+            found = {path: path.stat().st_ino for path in work.glob("kept-*.plain")}
             if found and not finished:
                 finished.update(found)
                 cluster.kill_a_worker()
 
     assert points_read(sample, monkeypatch, Kill(), scheduler=cluster.address, work_folder=str(work)) == points_read(sample, monkeypatch)
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
 
 
 def test_point_clouds_that_workers_do_not_see_are_read_here(cluster, sample, monkeypatch):

@@ -249,6 +249,16 @@ def test_the_icon_of_markings_shows_their_paint_on_asphalt(qgis_app):
     assert {QColor(icon.pixel(x, y)).name() for x in range(16) for y in range(16)} >= {"#ffffff", "#8d9299"}
 
 
+def test_heights_are_shown_as_a_hillshade_below_the_intensity_image(qgis_app, tmp_path):
+    path = str(tmp_path / "heights.tif")
+    dataset = gdal.GetDriverByName("GTiff").Create(path, 10, 10, 1, gdal.GDT_Float32)
+    dataset.GetRasterBand(1).WriteRaster(0, 0, 10, 10, np.arange(100, dtype=np.float32).tobytes())
+    del dataset
+    layer, (look, order) = QgsRasterLayer(path, "heights"), LOOKS["DEM"]
+    Styler(STYLES / f"{look}.qml", (), "DEM").postProcessLayer(layer, QgsProcessingContext(), None)
+    assert layer.renderer().type() == "hillshade" and order < LOOKS["INTENSITY_IMAGE"][1]
+
+
 def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):
     path = str(tmp_path / "image.tif")
     values = np.linspace(3000.0, 9000.0, 10000, dtype=np.float32)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from contextlib import closing
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,37 +20,11 @@ from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import widened
-from ..common.side_curbs import Search, Section, curbs_along, grids_beside, merged_passes, steps_of_roads
+from ..common.side_curbs import Search, Section, merged_passes
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
-from ..curb_returns.detect import with_curb_returns
-from ..surface.ground_grid import MeasuredGround, is_thin
-from ..surface.road_look import RoadLook
+from ..surface.ground_grid import is_thin
 from ..weights import CURBS, PROFILE
 from .steps import beside, find_averaged_steps, find_steps
-
-
-def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 ground: MeasuredGround | None = None) -> CurbPoints:
-    """Bottom corners of the curb on each side of every road, one per block, and those of corners, side streets and islands.
-
-    ground : MeasuredGround of the survey, which keeps what is measured here, or None
-
-    Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of status `bridged` lie on the line
-    across a lowered curb, and those of status `occluded` where the curb is expected and something hides it.
-    """
-    ground = ground or MeasuredGround(survey)
-    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        main, beside = main_curbs(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress), ground)
-        return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
-
-
-def main_curbs(decimation: PointDecimation, settings: CurbSettings, progress: Progress = Progress(),
-               ground: MeasuredGround | None = None) -> tuple[CurbPoints, dict[int, dict[str, OcclusionGrid]]]:
-    """The points of the roads' own curbs alone, and what was seen beside each road: its number -> side -> OcclusionGrid."""
-    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, progress)["profiles"]
-    points = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground or MeasuredGround(decimation.survey)))["profiles"]
-    tell_points(points, progress)
-    return points, grids_beside(steps)
 
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress, RememberedMessages
 from lanewright.core.execution import keep
-from lanewright.core.execution.keep import Keep, work_folder
+from lanewright.core.execution.keep import Keep, KeptRun, work_folder
 from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain
 from lanewright.core.markings.outliers import OutlierSettings, kept_of_windows
 from lanewright.core.survey.las.samples import TimeSlots
@@ -87,17 +87,16 @@ def test_phases_that_read_from_files_are_run_again_unless_they_say_that_these_ar
     assert [items for items in asked.items if items] == asked_again
 
 
-def test_what_many_runs_asked_is_forgotten_together_with_the_files_of_it(tmp_path):
-    asked = Asked()
-    asked.folder = tmp_path
-    (tmp_path / "points-1.bin").touch()
-    kept = Keep(asked)
-    results(kept, [1, 2])
-    assert not kept.full
-    results(kept, [3, 4, 5])
-    assert kept.full
-    kept.clear()
-    assert not any(tmp_path.iterdir()) and results(kept, [1]) == [2] and asked.items[-1] == [1]
+def test_a_window_whose_runs_asked_twice_as_much_as_the_first_begins_anew():
+    window, kept, freed = KeptRun(), Keep(Asked()), []
+    window.wanted = True
+    for count in (2, 4, 5):
+        assert window.take()
+        window.phases, window.free = kept, lambda: freed.append("points")
+        window.keep("survey", "the same", "points")
+        results(kept, range(count))
+        window.give_back()
+        assert window.known("survey", "the same") == (not freed) == (count < 5)
 
 
 def in_folder(asked, folder, items=(1, 2, 3), phase=None):

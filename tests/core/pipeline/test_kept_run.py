@@ -33,7 +33,7 @@ def street(made_survey):
 @pytest.fixture
 def kept():
     kept = KeptRun()
-    kept.begin()
+    kept.wanted = True
     yield kept
     kept.end()
 
