@@ -8,6 +8,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
 from ..core.lazy import shapely
 from .algorithm import Algorithm, settings_class, settings_of
+from .rooms import core, products
 from .texts import tr
 
 NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
@@ -29,9 +30,8 @@ def tolerances(call, name="TOLERANCES"):
     try:
         return tuple(float(part) for part in parts)
     except ValueError:
-        raise RoadExtractionError(
-            tr("{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.").format(label=call.label(name), text=text)
-        ) from None
+        raise RoadExtractionError(tr("{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.", label=call.label(name),
+                                     text=text)) from None
 
 
 def layer_of(call, name):
@@ -57,9 +57,7 @@ def reference_of(call, name):
 
 def _read(source):
     """(AssessedLayer, place of each of its rows among those of the source)."""
-    from ..products.assess.layers import AssessedLayer
-
-    layer, indices = AssessedLayer(source.label, [], [], source.crs), []
+    layer, indices = products.assess.layers.AssessedLayer(source.label, [], [], source.crs), []
     for k, (wkb, values) in enumerate(source.rows()):
         if wkb is not None:
             layer.geometries.append(shapely.from_wkb(wkb))
@@ -70,54 +68,46 @@ def _read(source):
 
 def compared_lines(result, reference, progress):
     """(result, reference, their CRS) of two layers of lines, in one CRS and without stray vertices; refused where they do not overlap."""
-    from ..products.assess.layers import check_kind, check_overlap, common_crs, in_crs, without_stray_vertices
-
+    layers = products.assess.layers
     for layer in (result, reference):
-        check_kind(layer, ("LineString", "Polygon"), tr("lines"))
-    crs = common_crs((reference, result))
-    result, reference = (without_stray_vertices(in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
-    check_overlap(result, reference)
+        layers.check_kind(layer, ("LineString", "Polygon"), tr("lines"))
+    crs = layers.common_crs((reference, result))
+    result, reference = (layers.without_stray_vertices(layers.in_crs(layer, crs, progress.warn), progress.warn) for layer in (result, reference))
+    layers.check_overlap(result, reference)
     return result, reference, crs
 
 
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
-    from ..core.io.crs import in_metres
-    from ..products.assess.layers import AssessedLayer, polygons_of_raster
-
     source, path, crs = call.painted(name)
     if source is not None:
         return _read(source)[0], False
-    polygons, values, _ = polygons_of_raster(path, progress)
-    crs, units = in_metres(crs)
+    polygons, values, _ = products.assess.layers.polygons_of_raster(path, progress)
+    crs, units = core.io.crs.in_metres(crs)
     if not units.metric:
         polygons = [shapely.transform(polygon, units.in_metres) for polygon in polygons]
     has_classes = len(set(values.tolist())) > 1
-    return AssessedLayer(call.label(name), polygons, [{"class": str(value)} if has_classes else {} for value in values], crs), True
+    rows = [{"class": str(value)} if has_classes else {} for value in values]
+    return products.assess.layers.AssessedLayer(call.label(name), polygons, rows, crs), True
 
 
 def frame_of_drive(call, crs):
     """The road frame of TRAJECTORY in the CRS; None where it was not given. Heights are not needed."""
-    from ..core.survey.frame.road_frame import build_frame
-    from ..core.survey.trajectory.trajectory import reproject_trajectory
-
     trajectory = call.trajectory(heights_needed=False)
     if trajectory is None:
         return None
-    return build_frame(reproject_trajectory(trajectory, crs))
+    return core.survey.frame.road_frame.build_frame(core.survey.trajectory.trajectory.reproject_trajectory(trajectory, crs))
 
 
 def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
-    from ..products.assess.layers import check_kind, in_crs
-
     layer = layer_of(call, "AREA")
     if layer is None:
         return None
-    check_kind(layer, ("Polygon",), "polygons")
+    products.assess.layers.check_kind(layer, ("Polygon",), "polygons")
     if not layer.geometries:
-        raise RoadExtractionError(tr("{label} has no polygons. Leave it empty to judge everywhere.").format(label=layer.label))
-    return shapely.union_all(shapely.make_valid(shapely.force_2d(in_crs(layer, crs, warn).geometries)))
+        raise RoadExtractionError(tr("{label} has no polygons. Leave it empty to judge everywhere.", label=layer.label))
+    return shapely.union_all(shapely.make_valid(shapely.force_2d(products.assess.layers.in_crs(layer, crs, warn).geometries)))
 
 
 def found_numbers(numbers):
@@ -153,33 +143,30 @@ class AssessBoundaries(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.layers import along_the_road_only, bottoms_only, boundary_layer, check_reference, edges_that_compare
-        from ..products.assess.lines import assess_boundaries
-        from ..products.report.assessment import boundary_report
-
         settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
         reference = reference_of(call, "REFERENCE")
         result, reference, crs = compared_lines(layer_of(call, "INPUT"), reference, progress)
         progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
-        for choose in (bottoms_only, along_the_road_only):
+        for choose in (products.assess.layers.bottoms_only, products.assess.layers.along_the_road_only):
             result, reference = (choose(layer, progress.warn) for layer in (result, reference))
-        result, reference = edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
+        result, reference = products.assess.layers.edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
         judged, excluded = (reference.subset([(why is None) == is_judged for why in reference.excluded]) for is_judged in (True, False))
-        check_reference(judged, result, frame, area, settings.corridor, progress.warn)
+        products.assess.layers.check_reference(judged, result, frame, area, settings.corridor, progress.warn)
         progress.report(0.4)
-        accuracy = assess_boundaries(
+        accuracy = products.assess.lines.assess_boundaries(
             result.geometries, judged.geometries, settings, frame, excluded.geometries, excluded.excluded, area, judged.column("side"),
             progress.part(0.4, 0.8))
         progress.report(0.8)
-        layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
+        layer = products.assess.layers.boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), progress.warnings))
+            names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
+            call.text("REPORT", products.report.assessment.boundary_report(accuracy, layer, names, progress.warnings))
         numbers = found_numbers(_boundary_numbers(accuracy))
-        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
-            correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
-            rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
+        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.",
+                         correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
+                         rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
         return numbers
 
 
@@ -227,40 +214,38 @@ class AssessMarkings(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.layers import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_layer, marking_polygons
-        from ..products.assess.markings import assess_markings, outcome_raster
-
         settings = call.settings(MARKING_SETTINGS, tolerances=tolerances(call))
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
-        crs = common_crs(layers[::-1])
+        crs = products.assess.layers.common_crs(layers[::-1])
         field = call.value("CLASS_FIELD")
-        result, reference = (marking_polygons(in_crs(layer, crs, progress.warn), settings.line_width) for layer in layers)
-        check_overlap(result, reference)
+        result, reference = (products.assess.layers.marking_polygons(products.assess.layers.in_crs(layer, crs, progress.warn), settings.line_width)
+                             for layer in layers)
+        products.assess.layers.check_overlap(result, reference)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
-        check_marking_reference(reference, result, area, progress.warn)
-        classes = [classes_of(layer, field) for layer in (result, reference)]
+        products.assess.layers.check_marking_reference(reference, result, area, progress.warn)
+        classes = [products.assess.layers.classes_of(layer, field) for layer in (result, reference)]
         image = call.raster_in("IMAGE", crs)
         shapes = [*result.geometries, *reference.geometries]
-        with outcome_raster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances)) if call.wants("CELLS") \
-                else nullcontext() as cells:
-            accuracy = assess_markings(result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
-        layer = marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
+        raster = nullcontext()
+        if call.wants("CELLS"):
+            raster = products.assess.markings.outcome_raster(call.new_file("CELLS"), shapes, settings.cell_size, crs, max(settings.tolerances))
+        with raster as cells:
+            accuracy = products.assess.markings.assess_markings(
+                result.geometries, reference.geometries, settings, *classes, area, image, cells, progress.part(0.35, 0.9))
+        layer = products.assess.layers.marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             self._report(call, accuracy, layer, frame, image, progress.warnings)
         numbers = found_numbers(_marking_numbers(accuracy))
-        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
-            cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
-            tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
+        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.", cells=settings.tolerance,
+                         strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
+                         tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
         return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
-        from ..products.assess.matching import stations_of_blocks
-        from ..products.report.assessment import marking_report
-
-        station, along = stations_of_blocks(accuracy.blocks, frame)
+        station, along = products.assess.matching.stations_of_blocks(accuracy.blocks, frame)
         names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
-        call.text("REPORT", marking_report(accuracy, layer, names, station, along, image, warnings))
+        call.text("REPORT", products.report.assessment.marking_report(accuracy, layer, names, station, along, image, warnings))
 
 
 def _marking_numbers(accuracy):
@@ -289,29 +274,24 @@ class AssessDrivingLines(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.assess.layers import check_reference, driving_line_layer
-        from ..products.assess.lines import match_lines
-        from ..products.assess.matching import stations_of_match
-        from ..products.report.assessment import driving_report
-
         settings = self._settings(call)
         result, reference, crs = compared_lines(layer_of(call, "INPUT"), layer_of(call, "REFERENCE"), progress)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
-        check_reference(reference, result, frame, area, warn=progress.warn)
+        products.assess.layers.check_reference(reference, result, frame, area, warn=progress.warn)
         progress.report(0.3)
-        match = match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
+        match = products.assess.lines.match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
         accuracy = match.accuracy(settings.tolerances)
         progress.report(0.7)
-        layer = driving_line_layer(match, settings, crs, progress.part(0.7, 0.95))
+        layer = products.assess.layers.driving_line_layer(match, settings, crs, progress.part(0.7, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            station, along = stations_of_match(match, frame)
-            call.text("REPORT", driving_report(
+            station, along = products.assess.matching.stations_of_match(match, frame)
+            call.text("REPORT", products.report.assessment.driving_report(
                 match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
                 call.value("WIDTH") == "total-width", progress.warnings))
         numbers = found_numbers(_line_numbers(accuracy, settings.tolerance))
-        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
-            tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
+        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.", tolerance=100 * settings.tolerance,
+                         rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
         return numbers
 
     def _settings(self, call):
@@ -323,13 +303,11 @@ class AssessDrivingLines(Algorithm):
 
 
 def _line_numbers(accuracy, tolerance):
-    from ..products.assess.matching import f1_of
-
     complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
     return {
         "COMPLETENESS": complete, "CORRECTNESS": correct,
         "QUALITY": 100 * accuracy.quality[tolerance], "MISCODING": 100 * accuracy.miscoding[tolerance],
-        "PRECISION": correct, "RECALL": complete, "F1": f1_of(correct if accuracy.result_length else 0.0, complete),
+        "PRECISION": correct, "RECALL": complete, "F1": products.assess.matching.f1_of(correct if accuracy.result_length else 0.0, complete),
         **_errors(accuracy.lateral), "HEIGHT_RMSE": accuracy.height.rmse,
         "GAPS_PER_KM": accuracy.gaps_per_km[tolerance], "MEAN_GAP": accuracy.mean_gap[tolerance],
         "RESULT_LENGTH": accuracy.result_length, "REFERENCE_LENGTH": accuracy.reference_length,

@@ -11,7 +11,8 @@ from ..core.common.features import Features
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
-from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS
+from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS, edges_of
+from .rooms import core, products
 from .survey_input import SURVEY_SETTINGS, add_execution, corrections_of, estimated_trajectory, execution_of, frame_of, road_points_of, survey_inputs
 from .texts import tr
 
@@ -38,19 +39,14 @@ class DrivingLines(Algorithm):
         self.add_map_sink("CURVE_ELEMENTS", optional=True)
 
     def work(self, call, progress):
-        from ..core.driving.driving_lines import make_driving_lines
-        from ..core.markings.lines.painted_lines import PaintedLines
-        from ..core.markings.objects.marking_objects import MarkingObjects
-        from ..core.road.edges.road_edges import RoadEdges
-
         layers = {name: call.map_layer(name) for name in ("MARKING_LINES", "MARKINGS", "ROAD_EDGES")}
         marking_lines, markings, edges = layers.values()
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
         frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
-        lines, elements, lanes = make_driving_lines(
-            PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
-            markings=None if markings is None else MarkingObjects.from_features(markings, frame),
-            edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
+        lines, elements, lanes = core.driving.driving_lines.make_driving_lines(
+            core.markings.lines.painted_lines.PaintedLines.from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS),
+            progress.part(0.3, 1.0), edges=edges_of(edges, frame), road_points=road_points,
+            markings=None if markings is None else core.markings.objects.marking_objects.MarkingObjects.from_features(markings, frame))
         call.layer("DRIVING_LINES", lines.to_features(frame))
         call.layer("LANES", lanes.to_features(frame))
         call.layer("CURVE_ELEMENTS", elements.to_features(frame))
@@ -148,10 +144,7 @@ class RoadMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..core.pipeline.road_map import RoadMapSettings, make_road_map
-        from ..core.survey.road_points_las import write_road_points
-
-        settings = RoadMapSettings(
+        settings = core.pipeline.road_map.RoadMapSettings(
             correct=call.value("CORRECT_INTENSITY"),
             boundary_method=call.value("BOUNDARY_METHOD"),
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
@@ -169,12 +162,12 @@ class RoadMap(Algorithm):
         image_path = call.new_file("INTENSITY_IMAGE")
         if not image_path and call.wants("REPORT") and find_spec("osgeo") is not None:
             image_path = call.scratch_file("intensity.tif")
-        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
+        road_map = core.pipeline.road_map.make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
         call.at_end(road_map.free)
         if estimated:
             road_map.survey_facts["trajectory"] = estimated.summary()
         if call.wants("ROAD_POINTS"):
-            write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
+            core.survey.road_points_las.write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
         if road_map.markings is None:
             call.drop_file("INTENSITY_IMAGE")
         layers = {}
@@ -182,13 +175,9 @@ class RoadMap(Algorithm):
             layer = layers[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(MAP_LAYERS[name].geometry, MAP_LAYERS[name].schema, crs=road_map.crs))
         if call.wants("PASSES"):
-            from ..core.survey.frame.placement import passes_to_features
-
-            call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
+            call.layer("PASSES", core.survey.frame.placement.passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
-            from ..products.report.road_map import road_map_report
-
-            call.text("REPORT", road_map_report(road_map, image_path))
+            call.text("REPORT", products.report.road_map.road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],
                                 *(layers[name] for name in ("edges", "marking_lines", "driving_lines", "markings")), road_map.corrections)

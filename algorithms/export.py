@@ -2,26 +2,22 @@
 
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
 from ..core.common.setting import Limited, setting
+from ..core.common.texts import word
 from ..core.lazy import shapely
 from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .call import existing_file
+from .rooms import core, products
 from .survey_input import READING_SETTINGS, open_survey_with, road_points_of
 from .texts import languages, told, tr
+from .vector_source import LINE
 
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
-
-
-def add_map_layers(algorithm):
-    """The layers that a map is read into, and their CRS."""
-    algorithm.add_input("crs", "CRS", optional=True)
-    algorithm.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
-    for name in READ_LAYERS:
-        algorithm.add_map_sink(name, optional=True)
 
 
 def add_any_map(algorithm):
@@ -37,24 +33,17 @@ def map_file(call):
 def read_map(call, progress, lanelets):
     """(the map of the file that was given, CRS of its layers, notes), of Lanelet2 if `lanelets`, else of OpenDRIVE."""
     if lanelets:
-        from ..products.export.lanelet_map import read_lanelet2
-
-        return read_lanelet2(map_file(call), progress), call.crs(), []
-    from ..products.export.opendrive.xodr import read_opendrive
-    from ..products.export.sources import crs_of_reference
-
-    whole = read_opendrive(map_file(call), progress)
-    crs, note = crs_of_reference(whole.reference, call.crs())
+        return products.export.lanelet_map.read_lanelet2(map_file(call), progress), call.crs(), []
+    whole = products.export.opendrive.xodr.read_opendrive(map_file(call), progress)
+    crs, note = products.export.sources.crs_of_reference(whole.reference, call.crs())
     return whole, crs, [note] if note else []
 
 
 def map_layers(call, progress, lanelets):
     """The file that was given as RoadMapSource, not yet checked."""
-    from ..products.export.lanelet_map import layers_of_lanelets
-    from ..products.export.opendrive.xodr import layers_of_opendrive
-
     whole, crs, notes = read_map(call, progress.part(0.0, 0.5), lanelets)
-    layers = (layers_of_lanelets if lanelets else layers_of_opendrive)(whole, crs, progress.part(0.5, 0.95))
+    layers_of = products.export.lanelet_map.layers_of_lanelets if lanelets else products.export.opendrive.xodr.layers_of_opendrive
+    layers = layers_of(whole, crs, progress.part(0.5, 0.95))
     layers.notes += [*notes, *layers.said_left_out()]
     return layers
 
@@ -69,7 +58,7 @@ def write_map_layers(call, layers, progress):
     lanes = layers.lanes
     driven = (lanes.type == "driving") | (lanes.type == "connector")
     length = float(lanes.length[driven].sum())
-    progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.").format(count=len(lanes), length=length))
+    progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.", count=len(lanes), length=length))
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
@@ -88,34 +77,29 @@ def add_road_map_layers(algorithm):
 
 def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
-    from ..core.driving.layers import Lanes
-    from ..products.export.sources import RoadMapSource, checked, known_of_roads
-
     areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
     layers = {name.lower(): call.features(name, [field for field in [*MAP_LAYERS[name].schema, COLOUR] if field.name in read.split()],
                                           MAP_LAYERS[name].geometry) for name, read in EXPORTED_LAYERS.items()}
-    source = checked(RoadMapSource(Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"), attributes=known_of_roads(areas)))
+    sources = products.export.sources
+    source = sources.checked(sources.RoadMapSource(core.driving.layers.Lanes.from_features(areas), **layers, signals=call.map_layer("SIGNALS"),
+                                                   attributes=sources.known_of_roads(areas)))
     if call.cloud("ROAD_POINTS"):
-        from ..products.export.sources import with_surface_heights
-
         road_points = road_points_of(call, "ROAD_POINTS", progress)
-        lanes, share = with_surface_heights(source.lanes, road_points)
+        lanes, share = sources.with_surface_heights(source.lanes, road_points)
         road_points.close()
-        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.").format(share=100 * share))
+        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.", share=100 * share))
         source = replace(source, lanes=lanes)
     return source
 
 
 def lanes_with_borders(source):
     """A RoadMapSource with ways through junctions, and borders that neighbours share."""
-    from ..products.export.shared_borders import with_inferred_ways, with_shared_borders
-
-    return with_shared_borders(with_inferred_ways(source))
+    return products.export.shared_borders.with_shared_borders(products.export.shared_borders.with_inferred_ways(source))
 
 
 def warn_of_faults(notes, findings, progress):
     """Say what a map lacks, and what the check of its file found."""
-    progress.warn_all((*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())))
+    progress.warn_all((*notes, *(tr("{fault}: {count}", fault=told(fault), count=count) for fault, count in findings.counts().items())))
 
 
 def fault_table(findings):
@@ -139,14 +123,10 @@ class RoadAttributes(Algorithm):
         self.add_sink("OUTPUT", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", look="LANES")
 
     def work(self, call, progress):
-        from ..core.driving.layers import Lanes
-        from ..products.export.road_attributes import attributes_along, read_osm_ways
-
         if bool(call.file("OSM_FILE")) == call.given("WAYS"):
-            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).").format(
-                file=call.label("OSM_FILE"), layer=call.label("WAYS")))
+            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).", file=call.label("OSM_FILE"), layer=call.label("WAYS")))
         areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
-        lanes = Lanes.from_features(areas)
+        lanes = core.driving.layers.Lanes.from_features(areas)
         if not len(lanes):
             raise RoadExtractionError(
                 tr("The layer of lanes is empty. Run Driving lines or Road map where there are marking lines or road edges."))
@@ -154,15 +134,16 @@ class RoadAttributes(Algorithm):
             raise RoadExtractionError(
                 tr("The layer of lanes has no CRS, so its latitude and longitude are unknown. Set the CRS of the layer and run again."))
         if call.file("OSM_FILE"):
-            ways = read_osm_ways(existing_file(call.file("OSM_FILE"), call.label("OSM_FILE")), lanes.crs, progress.part(0.0, 0.5))
+            file = existing_file(call.file("OSM_FILE"), call.label("OSM_FILE"))
+            ways = products.export.road_attributes.read_osm_ways(file, lanes.crs, progress.part(0.0, 0.5))
         else:
             ways = _ways_of_layer(call.source("WAYS"), lanes.crs)
-        known = attributes_along(lanes, ways, call.settings(ATTRIBUTE_SETTINGS))
+        known = products.export.road_attributes.attributes_along(lanes, ways, call.settings(ATTRIBUTE_SETTINGS))
         for row in areas.rows:
             row.update(known.get(str(row["lane_id"]), {}))
         if not known:
             progress.warn(tr("No lane lies along a way that says anything. Do the ways cover the survey?"))
-        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.").format(known=len(known), count=len(lanes)))
+        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.", known=len(known), count=len(lanes)))
         call.layer("OUTPUT", areas)
         counts = {name: float(sum(row.get(field) is not None for row in areas.rows))
                   for name, field in (("SPEEDS", "speed_kmh"), ("NAMES", "name"))}
@@ -171,14 +152,11 @@ class RoadAttributes(Algorithm):
 
 def _ways_of_layer(source, crs):
     """The roads of a layer of lines in the CRS of the lanes."""
-    from ..products.export.road_attributes import ways_in
-    from .vector_source import LINE
-
     if source.kind != LINE or not source.stored_crs:
-        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.").format(label=source.label))
+        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.", label=source.label))
     lines = [(shapely.get_coordinates(part), dict(zip(source.names, values))) for wkb, values in source.stored_rows() if wkb
              for part in shapely.get_parts(shapely.from_wkb(wkb))]
-    return ways_in(lines, source.stored_crs, crs)
+    return products.export.road_attributes.ways_in(lines, source.stored_crs, crs)
 
 
 ROADS = "products.export.opendrive.exporter:OpenDriveSettings"
@@ -209,32 +187,29 @@ class ExportOpenDrive(Algorithm):
 
 def write_opendrive(call, source, name, progress):
     """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
-    from ..products.export.check.roads import check_opendrive
-    from ..products.export.opendrive.exporter import draft_opendrive
-    from ..products.export.opendrive.xodr import layers_of_opendrive, opendrive_text, read_opendrive
-    from ..products.export.sources import border_misses, driving_line_misses, reference_of_crs
-
     settings = call.settings(ROAD_SETTINGS, version=call.value("VERSION"), traffic_side=call.value("TRAFFIC_SIDE"))
-    draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
-    draft.map.reference = reference_of_crs(source.lanes.crs)
+    sources, xodr = products.export.sources, products.export.opendrive.xodr
+    draft = products.export.opendrive.exporter.draft_opendrive(source, settings, progress.part(0.2, 0.7))
+    draft.map.reference = sources.reference_of_crs(source.lanes.crs)
     path = call.new_file("OUTPUT")
-    Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
-    whole = read_opendrive(path)
-    shown, check = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
-    across, rise = border_misses(source.lanes, shown.lanes)
-    driven = driving_line_misses(source.driving_lines, shown.lanes)
+    Path(path).write_text(xodr.opendrive_text(draft.map), encoding="utf-8")
+    whole = xodr.read_opendrive(path)
+    shown = xodr.layers_of_opendrive(whole, source.lanes.crs)
+    check = products.export.check.roads.check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+    across, rise = sources.border_misses(source.lanes, shown.lanes)
+    driven = sources.driving_line_misses(source.driving_lines, shown.lanes)
     led = source.led_to_middles()
-    single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
+    single = sources.driving_line_misses(source.driving_lines, shown.lanes, apart_from=led) if len(led) else driven
     notes = [*source.notes, *draft.notes]
     if not source.lanes.crs:
         notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
     if across.largest > settings.tolerance or rise.largest > settings.tolerance:
         x, y, _ = (across if across.largest > settings.tolerance else rise).worst
-        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
-                        "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
+        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the tolerance, the "
+                        "farthest near x {x:.1f}, y {y:.1f}.", across=across.largest, rise=rise.largest, x=x, y=y))
     warn_of_faults(notes, check, progress)
-    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
-        roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.", roads=len(whole.roads),
+                     junctions=len(whole.junctions), across=across.largest))
     if call.wants("REPORT"):
         call.text("REPORT", _report(name, whole, check, shown, (across, rise, driven, single), notes))
     numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
@@ -245,9 +220,6 @@ def write_opendrive(call, source, name, progress):
 
 
 def _report(name, whole, network, shown, misses, notes):
-    from ..core.common.texts import word
-    from ..products.report.hd_map import map_export_report
-
     lengths = defaultdict(float)
     for road in whole.roads:
         for element in road.plan.elements:
@@ -263,7 +235,7 @@ def _report(name, whole, network, shown, misses, notes):
         (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
          [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
-    return map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(network), notes, shown)
+    return products.report.hd_map.map_export_report(tr("OpenDRIVE map"), name, facts, tables + fault_table(network), notes, shown)
 
 
 LANELET_SETTINGS = settings_of("products.export.lanelet_export:LaneletSettings", "SPEED_LIMIT")
@@ -293,42 +265,37 @@ class ExportLanelet2(Algorithm):
 
 def write_lanelet2(call, source, name, progress):
     """Write a RoadMapSource with shared borders as OUTPUT, and its report; returns the numbers. `name`: of what it was made of."""
-    from ..products.export.check.lanelets import check_lanelets
-    from ..products.export.lanelet_export import draft_lanelets, lanelet2_text, to_degrees
-    from ..products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
-    from ..products.report.hd_map import map_export_report
-
     progress.report(0.2)
-    draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
-    degrees = to_degrees(draft.nodes, source.lanes.crs)
+    draft = products.export.lanelet_export.draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.value("LOCATION")))
+    degrees = products.export.lanelet_export.to_degrees(draft.nodes, source.lanes.crs)
     path = call.new_file("OUTPUT")
-    Path(path).write_text(lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
+    Path(path).write_text(products.export.lanelet_export.lanelet2_text(draft, degrees, call.value("LOCAL_COORDINATES")), encoding="utf-8")
     progress.report(0.6)
-    whole = read_lanelet2(path)
-    check = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+    whole = products.export.lanelet_map.read_lanelet2(path)
+    check = products.export.check.lanelets.check_lanelets(whole, *products.export.lanelet_map.node_places(whole, source.lanes.crs))
     progress.report(0.8)
-    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.", count=count, kind=kind)
                               for kind, count in draft.skipped.items())]
     if draft.added:
-        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
-            count=draft.added))
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.",
+                        count=draft.added))
     if draft.unmet:
-        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
-            count=draft.unmet))
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.",
+                        count=draft.unmet))
     if degrees.local:
         notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
     warn_of_faults(notes, check, progress)
     numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
                "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
-    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
+    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.", count=len(draft.lanelets), way=told(degrees.way)))
     if call.wants("REPORT"):
         accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
         facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
                  (tr("Pairs of lanes side by side"), check.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
                  (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
                  (tr("Heights"), told(degrees.vertical))]
-        call.text("REPORT", map_export_report(tr("Lanelet2 map"), name, facts, fault_table(check), notes,
-                                              layers_of_lanelets(whole, source.lanes.crs)))
+        layers = products.export.lanelet_map.layers_of_lanelets(whole, source.lanes.crs)
+        call.text("REPORT", products.report.hd_map.map_export_report(tr("Lanelet2 map"), name, facts, fault_table(check), notes, layers))
     return numbers
 
 
@@ -348,47 +315,40 @@ class ExportCad(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.report.hd_map import map_export_report
-
         kind, path = call.value("FORMAT"), call.destination("OUTPUT") or ""
         named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
         if named != kind and path != "TEMPORARY_OUTPUT":
-            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
-                path=path, named=named, kind=kind))
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.", path=path, named=named,
+                                         kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
         progress.warn_all(source.notes)
         numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
         if call.wants("REPORT"):
             facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
-            call.text("REPORT", map_export_report(tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
+            call.text("REPORT", products.report.hd_map.map_export_report(
+                tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
         return numbers
 
 
 def _dxf(call, source, progress):
-    from ..products.cad import dxf_lines, write_dxf
-
-    lines = dxf_lines(source)
-    write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
+    lines = products.cad.dxf_lines(source)
+    products.cad.write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
     counts = Counter(line.layer for line in lines)
-    progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
+    progress.info(tr("{count} polylines in {layers} layers.", count=len(lines), layers=len(counts)))
     return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [(tr("Layers"), (tr("Layer"), tr("Polylines")), sorted(counts.items()))]
 
 
 def _landxml(call, source, progress):
-    from datetime import datetime
-
-    from ..products.cad import alignments_of, landxml_text
-
     tolerance = call.value("TOLERANCE")
-    alignments = alignments_of(source, tolerance)
-    text = landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
+    alignments = products.cad.alignments_of(source, tolerance)
+    text = products.cad.landxml_text(alignments, source.lanes.crs, call.layer_name("LANES"), datetime.now())
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
-        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.").format(count=irregular))
+        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.", count=irregular))
     missed = max((alignment.missed for alignment in alignments), default=0.0)
-    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
-        count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
+    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.", count=len(alignments),
+                     length=sum(alignment.length for alignment in alignments), missed=missed))
     rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
             for one in alignments]
     tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
@@ -445,25 +405,22 @@ class PrintSheets(Algorithm):
 class ImportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "importopendrive", "Import OpenDRIVE", "Export"
     NUMBERS = "LANE_COUNT LENGTH".split()
+    FILES, LANELETS = "OpenDRIVE (*.xodr *.XODR *.xml)", False
 
     def declare(self):
-        self.add_input("file", "INPUT", file_filter="OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)")
-        add_map_layers(self)
+        self.add_input("file", "INPUT", file_filter=f"{self.FILES};;All files (*.*)")
+        self.add_input("crs", "CRS", optional=True)
+        self.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+        for name in READ_LAYERS:
+            self.add_map_sink(name, optional=True)
 
     def work(self, call, progress):
-        return write_map_layers(call, map_layers(call, progress, False), progress)
+        return write_map_layers(call, map_layers(call, progress, self.LANELETS), progress)
 
 
-class ImportLanelet2(Algorithm):
+class ImportLanelet2(ImportOpenDrive):
     ID, TITLE, GROUP = "importlanelet2", "Import Lanelet2", "Export"
-    NUMBERS = "LANE_COUNT LENGTH".split()
-
-    def declare(self):
-        self.add_input("file", "INPUT", file_filter="Lanelet2 (*.osm *.OSM *.xml);;All files (*.*)")
-        add_map_layers(self)
-
-    def work(self, call, progress):
-        return write_map_layers(call, map_layers(call, progress, True), progress)
+    FILES, LANELETS = "Lanelet2 (*.osm *.OSM *.xml)", True
 
 
 class ConvertMap(Algorithm):
@@ -478,15 +435,14 @@ class ConvertMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.export.sources import checked
-
         path, output = map_file(call), str(call.output_path("OUTPUT"))
         from_lanelets = _is_lanelet2(path)
         if from_lanelets == output.lower().endswith(".osm"):
-            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
-                path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
+            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.", path=path,
+                                         output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE",
+                                         ending=".xodr" if from_lanelets else ".osm"))
         layers = map_layers(call, progress.part(0.0, 0.2), from_lanelets)
-        source = lanes_with_borders(checked(layers))
+        source = lanes_with_borders(products.export.sources.checked(layers))
         numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
         return {"SUCCESSORS": numbers["SUCCESSORS"], "FINDINGS": numbers["FINDINGS"], "SIGNAL_COUNT": float(len(layers.signals)),
                 "LEFT_OUT": float(sum(layers.left_out.values()))}
@@ -505,30 +461,28 @@ class CheckMap(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.export.check.lanelets import check_lanelets
-        from ..products.export.check.roads import check_opendrive
-        from ..products.export.lanelet_map import node_places
-        from ..products.report.hd_map import map_check_report, places_of_findings
-
         path = map_file(call)
         lanelets = _is_lanelet2(path)
         whole, crs, notes = read_map(call, progress.part(0.0, 0.4), lanelets)
         rest = progress.part(0.4, 0.95)
-        check = check_lanelets(whole, *node_places(whole, crs), rest) if lanelets else check_opendrive(whole, crs, rest)
+        if lanelets:
+            check = products.export.check.lanelets.check_lanelets(whole, *products.export.lanelet_map.node_places(whole, crs), rest)
+        else:
+            check = products.export.check.roads.check_opendrive(whole, crs, rest)
         progress.warn_all(notes)
         call.layer("OUTPUT", check.to_features())
         if call.wants("REPORT"):
-            call.text("REPORT", map_check_report(check, path, notes))
+            call.text("REPORT", products.report.hd_map.map_check_report(check, path, notes))
         counts = check.counts()
         groups, _ = check.groups()
         for group in groups[:ROWS_IN_LOG]:
-            progress.warn(tr("{fault}: {count} ({places}). {text}").format(
-                fault=told(group.worst.fault), count=group.count, places=places_of_findings(group, PLACES_IN_LOG), text=told(group.worst.text)))
+            places = products.report.hd_map.places_of_findings(group, PLACES_IN_LOG)
+            progress.warn(tr("{fault}: {count} ({places}). {text}", fault=told(group.worst.fault), count=group.count, places=places,
+                             text=told(group.worst.text)))
         if len(groups) > ROWS_IN_LOG:
-            progress.warn(tr("The first {shown} of {count}; the layer has all of them.").format(shown=ROWS_IN_LOG, count=len(groups)))
-        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
-                         "side.").format(
-            findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
+            progress.warn(tr("The first {shown} of {count}; the layer has all of them.", shown=ROWS_IN_LOG, count=len(groups)))
+        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by side.",
+                         findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
         return {"FINDINGS": float(len(check.found)), "FAULTS": float(len(counts)), "LANES": float(check.lanes),
                 "SUCCESSORS": float(check.successors), "NEIGHBOURS": float(check.neighbours)}
 
@@ -538,8 +492,8 @@ def _is_lanelet2(path):
     with open(path, "rb") as file:
         head = file.read(4096)
     if b"<osm" not in head and b"<OpenDRIVE" not in head:
-        raise RoadExtractionError(
-            tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
+        raise RoadExtractionError(tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.",
+                                     path=path))
     return b"<osm" in head
 
 
@@ -557,52 +511,47 @@ class ExportTemplate(Algorithm):
     def declare(self):
         self.add_input("file", "TEMPLATE", file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
         for name in TEMPLATE_LAYERS:
-            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
+            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.", name=name), optional=True)
         self.add_input("file", "OFFICE", optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
         self.add_input("connection", "CONNECTION", optional=True)
         self.add_input("schema", "SCHEMA", optional=True, of="CONNECTION")
         self.add_output("file", "OUTPUT", optional=True, suffixes=(".gpkg", ".dxf"), file_filter="GeoPackage (*.gpkg);;DXF (*.dxf)")
 
     def work(self, call, progress):
-        from ..core.io.crs import parse_crs, same_crs
-        from ..products.client_fields import Database, apply_template, layers_of_client, read_template, write_client_layers
-
-        schema = call.value("SCHEMA") or ""
+        client, schema = products.client_fields, call.value("SCHEMA") or ""
         if bool(schema) != call.given("CONNECTION") or not (schema or call.wants("OUTPUT")):
-            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
-                output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
-        database = Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
+            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.",
+                                         output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
+        database = client.Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
         drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
         office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
         if drawing and office:
             raise RoadExtractionError(tr("The client's GeoPackage cannot be filled as a DXF drawing. Leave it out, or name the result .gpkg."))
         known = {name: (MAP_LAYERS[name].schema, MAP_LAYERS[name].geometry) for name in TEMPLATE_LAYERS}
-        template = read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
+        template = client.read_template(existing_file(call.file("TEMPLATE"), call.label("TEMPLATE")), known, mixed=drawing)
         layers = {name: call.features(name, [replace(field, needed=False) for field in schema], geometry)
                   for name, (schema, geometry) in known.items() if call.given(name)}
         if not layers:
             raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
         for name in sorted({rule.source for rule in template.rules} - set(layers)):
-            progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
+            progress.info(tr("{label} was not given: the rows about it are not used.", label=call.label(name)))
         crs = next((features.crs for features in layers.values() if features.crs), "")
         for name, features in layers.items():
-            if features.crs and not same_crs(parse_crs(features.crs), parse_crs(crs)):
-                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
-                    label=call.label(name)))
-        made = apply_template(template, layers, layers_of_client(office, crs, template) if office else None)
-        stored = apply_template(template, layers, layers_of_client(database, crs, template), whole=False).layers if database else {}
+            if features.crs and not core.io.crs.same_crs(core.io.crs.parse_crs(features.crs), core.io.crs.parse_crs(crs)):
+                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.",
+                                             label=call.label(name)))
+        made = client.apply_template(template, layers, client.layers_of_client(office, crs, template) if office else None)
+        stored = client.apply_template(template, layers, client.layers_of_client(database, crs, template), whole=False).layers if database else {}
         if drawing:
-            from ..products.cad import drawn_layers, write_dxf
-
-            write_dxf(drawn_layers(made.layers), call.new_file("OUTPUT"), crs)
+            products.cad.write_dxf(products.cad.drawn_layers(made.layers), call.new_file("OUTPUT"), crs)
         elif call.wants("OUTPUT"):
-            write_client_layers(made.layers, call.new_file("OUTPUT"), office)
+            client.write_client_layers(made.layers, call.new_file("OUTPUT"), office)
         if database:
-            write_client_layers(stored, database)
+            client.write_client_layers(stored, database)
         for name, features in made.layers.items():
-            progress.info(tr("{name}: {count:,} features").format(name=name, count=len(features)))
+            progress.info(tr("{name}: {count:,} features", name=name, count=len(features)))
         for what, count in sorted(made.left_out.items()):
-            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.").format(count=count, what=what))
+            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.", count=count, what=what))
         return {"FEATURES": float(sum(map(len, made.layers.values()))), "LAYERS": float(len(made.layers)),
                 "LEFT_OUT": float(sum(made.left_out.values()))}
 
@@ -631,44 +580,38 @@ class ClassifyCloud(Algorithm):
         self.add_output("folder", "UNROLLED", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.survey.las.point_fields import in_one_scale, intensity_source_of
-        from ..core.survey.las.reader import read_headers
-        from ..core.survey.las.samples import sample_files
-        from ..products.cloud.classify import CloudLayers, PointClass, PointClassifier
-        from ..products.cloud.rewrite import classified_copy
-
-        files = read_headers(call.point_clouds(), given=call.crs())
+        classify, PointClass = products.cloud.classify, products.cloud.classify.PointClass
+        files = core.survey.las.reader.read_headers(call.point_clouds(), given=call.crs())
         copies = _copies(call, files)
         # what was drawn by hand has no station
         layers = {name: call.features(name, [replace(field, needed=field.needed and field.name != "station_m") for field in MAP_LAYERS[name].schema
                                              if field.name in read.split()], MAP_LAYERS[name].geometry)
                   for name, read in CLOUD_LAYERS.items()}
         survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
-        samples = sample_files(files)
-        intensity = intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]
-        files, _ = in_one_scale(files, samples, call.value("INTENSITY_FROM"))
-        classifier = PointClassifier(survey, CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
+        samples = core.survey.las.samples.sample_files(files)
+        intensity = core.survey.las.point_fields.intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]
+        files, _ = core.survey.las.point_fields.in_one_scale(files, samples, call.value("INTENSITY_FROM"))
+        classifier = classify.PointClassifier(
+            survey, classify.CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
         total, done, counts = sum(file.count for file in files), 0, Counter()
         for file, copy in zip(files, copies):
             part = progress.part(0.4 + 0.6 * done / total, 0.4 + 0.6 * (done + file.count) / total)
-            counts.update(classified_copy(file, classifier, *copy, part))
+            counts.update(products.cloud.rewrite.classified_copy(file, classifier, *copy, part))
             done += file.count
         for number, count in sorted(counts.items()):
             name = PointClass(number).name.lower().replace("_", " ") if number in set(PointClass) else ""
-            progress.info(tr("Class {number} {name}: {count:,} points").format(number=number, name=name, count=count))
+            progress.info(tr("Class {number} {name}: {count:,} points", number=number, name=name, count=count))
         return {"FILES": float(len(files)), "POINTS": float(done), "ROAD_POINTS": float(counts[PointClass.ROAD_SURFACE]),
                 "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
 
 
 def _copies(call, files):
     """(path, path of the unrolled copy) for each of the files, whose names must differ."""
-    from ..core.survey.road_points_las import is_copc
-
     names = [Path(file.path) for file in files]
-    names = [f"{path.stem}.copc.laz" if call.value("COPC") and not is_copc(path) and file.point_format not in (4, 5, 9, 10)   # not with waveforms
-             else path.name for file, path in zip(files, names)]
+    is_copc, waveforms = core.survey.road_points_las.is_copc, (4, 5, 9, 10)
+    names = [f"{path.stem}.copc.laz" if call.value("COPC") and not is_copc(path) and file.point_format not in waveforms else path.name
+             for file, path in zip(files, names)]
     twice = next((name for k, name in enumerate(names) if name.lower() in {other.lower() for other in names[:k]}), None)
     if twice:
-        raise RoadExtractionError(
-            tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
+        raise RoadExtractionError(tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.", name=twice))
     return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in names]

@@ -5,6 +5,7 @@ from datetime import datetime
 from ..core.common.features import BREAKLINES, CROSS_SECTIONS, ROADSIDE, ROADSIDE_OBJECTS, SURFACE_FACES
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, settings_of
+from .rooms import products
 from .survey_input import READING_SETTINGS, open_survey_with
 from .texts import tr
 
@@ -22,11 +23,9 @@ def survey_with_borders(call, progress, above_road):
 
     A layer without features, as a step before may have found nothing, counts as not given.
     """
-    from ..products.inventory.borders import BorderLayers
-
     layers = {name: call.map_layer(name) for name in BORDER_LAYERS}
     survey = open_survey_with(call, layers, progress, above_road=above_road)
-    return survey, BorderLayers(*layers.values())
+    return survey, products.inventory.borders.BorderLayers(*layers.values())
 
 
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
@@ -52,24 +51,20 @@ class CrossSections(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.inventory.cross_sections import measure_cross_sections, sections_to_features
-        from ..products.report.inventory import cross_section_report
-
         settings = call.settings(SECTION_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_SECTIONS)
-        sections = measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
-        lines, table = sections_to_features(sections)
+        sections = products.inventory.cross_sections.measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
+        lines, table = products.inventory.cross_sections.sections_to_features(sections)
         call.layer("OUTPUT", lines)
         call.layer("TABLE", table)
-        from ..products.cad import landxml_text, section_alignments, section_drawing, section_table, write_dxf
-
         if call.wants("DRAWING"):
-            write_dxf(section_drawing(sections), call.new_file("DRAWING"))
+            products.cad.write_dxf(products.cad.section_drawing(sections), call.new_file("DRAWING"))
         if call.wants("LANDXML"):
-            call.text("LANDXML", landxml_text(section_alignments(sections), survey.crs, tr("Cross-sections"), datetime.now()))
+            alignments = products.cad.section_alignments(sections)
+            call.text("LANDXML", products.cad.landxml_text(alignments, survey.crs, tr("Cross-sections"), datetime.now()))
         if call.wants("HEIGHTS"):
-            call.text("HEIGHTS", section_table(sections))
-        call.text("REPORT", cross_section_report(sections, table))
+            call.text("HEIGHTS", products.cad.section_table(sections))
+        call.text("REPORT", products.report.inventory.cross_section_report(sections, table))
         return _numbers(table, len(sections.sections))
 
 
@@ -101,28 +96,24 @@ class SurfaceOfRoad(Algorithm):
         self.add_output("raster", "DEM", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..products.surface.model import make_surface_model, surface_to_features, write_heights
-
         settings = call.settings(SURFACE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.4), ABOVE_SURFACE)
-        model = make_surface_model(survey, layers, settings, progress.part(0.4, 0.9))
+        model = products.surface.model.make_surface_model(survey, layers, settings, progress.part(0.4, 0.9))
         progress.warn_all(model.notes)
-        lines, faces = surface_to_features(model)
+        lines, faces = products.surface.model.surface_to_features(model)
         call.layer("BREAKLINES", lines)
         call.layer("TIN", faces)
         if call.wants("SURFACE_FILE"):
-            from ..products.cad import landxml_text, surface_lines, write_dxf
-
             if call.new_file("SURFACE_FILE").lower().endswith(".dxf"):
-                write_dxf(surface_lines(model), call.new_file("SURFACE_FILE"), model.crs, model.places[model.surface.faces])
+                products.cad.write_dxf(products.cad.surface_lines(model), call.new_file("SURFACE_FILE"), model.crs, model.places[model.surface.faces])
             else:
-                call.text("SURFACE_FILE", landxml_text((), model.crs, tr("Surface"), datetime.now(), model))
+                call.text("SURFACE_FILE", products.cad.landxml_text((), model.crs, tr("Surface"), datetime.now(), model))
         if call.wants("DEM"):
-            write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
+            products.surface.model.write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
         share = 100 * model.vertices / max(model.points, 1)
         progress.info(tr("{triangles} triangles with {vertices} vertices, {share:.2f} for every hundred points; they miss the ground of the "
-                         "carriageway by {rmse:.1f} mm (root mean square).").format(triangles=len(faces), vertices=model.vertices, share=share,
-                                                                                   rmse=1000 * model.rmse))
+                         "carriageway by {rmse:.1f} mm (root mean square).", triangles=len(faces), vertices=model.vertices, share=share,
+                         rmse=1000 * model.rmse))
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
 
 
@@ -146,14 +137,11 @@ class Roadside(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..products.inventory.roadside.find import find_roadside, roadside_to_features
-        from ..products.report.inventory import roadside_report
-
         settings = call.settings(ROADSIDE_SETTINGS)
         survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROADSIDE)
-        roadside = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
-        lines, points = roadside_to_features(roadside)
+        roadside = products.inventory.roadside.find.find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
+        lines, points = products.inventory.roadside.find.roadside_to_features(roadside)
         call.layer("OUTPUT", lines)
         call.layer("OBJECTS", points)
-        call.text("REPORT", roadside_report(roadside, lines, points))
+        call.text("REPORT", products.report.inventory.roadside_report(roadside, lines, points))
         return {"LENGTH": sum(row["length_m"] for row in lines.rows if row["kind"] != "gutter"), "POLES": float(len(points))}

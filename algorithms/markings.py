@@ -6,6 +6,8 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, MARKING_LINES, MARKINGS
 from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, ParameterSpec, settings_of
+from .road import edges_of
+from .rooms import core, products
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
 from .texts import tr
 
@@ -23,18 +25,15 @@ class CorrectIntensity(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..core.intensity.correction import correct_intensity
-        from ..core.survey.road_points_las import write_road_points
-        from ..products.report.page import html_page
-
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
-        corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
-        write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+        corrected, report = core.intensity.correction.correct_intensity(
+            road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
+        core.survey.road_points_las.write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
             if line != report.saturation.warning:
                 progress.info(line)
-        call.text("REPORT", html_page("intensity_correction", report=report))
+        call.text("REPORT", products.report.page.html_page("intensity_correction", report=report))
 
 
 IMAGE_SETTINGS = settings_of("core.intensity.image:ImageSettings", "CELL_SIZE")
@@ -51,14 +50,11 @@ class IntensityImage(Algorithm):
         self.add_output("raster", "DISPLAY_IMAGE", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.intensity.image import write_intensity_image
-        from ..core.io.geotiff import write_display_image
-
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         path = call.new_file("INTENSITY_IMAGE")
-        write_intensity_image(road_points, path, call.settings(IMAGE_SETTINGS), progress.part(0.2, 0.9))
+        core.intensity.image.write_intensity_image(road_points, path, call.settings(IMAGE_SETTINGS), progress.part(0.2, 0.9))
         if call.wants("DISPLAY_IMAGE"):
-            write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
+            core.io.geotiff.write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
 
 
 MARKING_METHOD = ParameterSpec("choice", "METHOD", default="multi-threshold", choices=("multi-threshold", "intensity-peaks", "point-segments"))
@@ -68,9 +64,7 @@ MARKING_SETTINGS = settings_of("core.markings.paint.settings:MarkingSettings", "
 
 def marking_settings(call):
     """MarkingSettings with the method that the user chose."""
-    from ..products.published_markings import METHODS
-
-    return call.settings(MARKING_SETTINGS, method=METHODS[call.value("METHOD")])
+    return call.settings(MARKING_SETTINGS, method=products.published_markings.METHODS[call.value("METHOD")])
 
 
 class ExtractMarkings(Algorithm):
@@ -88,18 +82,13 @@ class ExtractMarkings(Algorithm):
         self.add_output("raster", "MARKING_MASK", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.intensity.image import check_image_shows
-        from ..core.io.geotiff import IntensityImage
-        from ..core.markings.paint.extract import extract_markings
-        from ..core.survey.road_points_las import write_road_points
-
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
-        image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
-        check_image_shows(image, road_points)
-        markings = extract_markings(
+        image = core.io.geotiff.IntensityImage.open(call.raster("INTENSITY_IMAGE"))
+        core.intensity.image.check_image_shows(image, road_points)
+        markings = core.markings.paint.extract.extract_markings(
             road_points, image, frame, marking_settings(call), progress.part(0.2, 0.95), mask_path=call.new_file("MARKING_MASK") or None)
-        write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
+        core.survey.road_points_las.write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
 
 
 OUTLIER_SETTINGS = settings_of("core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE", SCOPE=dict(choices=("all", "windows")))
@@ -114,13 +103,10 @@ class RemoveOutliers(Algorithm):
         self.add_output("cloud", "OUTPUT")
 
     def work(self, call, progress):
-        from ..core.markings.outliers import remove_outliers
-        from ..core.survey.road_points_las import write_road_points
-
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
         settings = call.settings(OUTLIER_SETTINGS)
-        kept = remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
-        write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+        kept = core.markings.outliers.remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
+        core.survey.road_points_las.write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
 
 
 CLUSTER_SETTINGS = settings_of("core.markings.objects.cluster:ClusterSettings", "DISTANCE")
@@ -138,13 +124,10 @@ class ClusterMarkings(Algorithm):
         self.add_output("cloud", "CLUSTERED_POINTS")
 
     def work(self, call, progress):
-        from ..core.markings.objects.cluster import cluster_markings
-        from ..core.survey.road_points_las import write_road_points
-
         points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)
-        markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_SETTINGS), progress.part(0.2, 0.9))
-        write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
+        markings, clustered = core.markings.objects.cluster.cluster_markings(points, frame, call.settings(CLUSTER_SETTINGS), progress.part(0.2, 0.9))
+        core.survey.road_points_las.write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
         call.layer("MARKINGS", markings.to_features(frame))
 
 
@@ -167,22 +150,19 @@ class FitMarkingLines(Algorithm):
         self.add_sink("NAMED_MARKINGS", fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False, look="MARKINGS")
 
     def work(self, call, progress):
-        from ..core.markings.lines.fit import fit_marking_lines, named_by_lines
-        from ..core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
-        from ..core.road.edges.road_edges import RoadEdges
-
         layer = call.map_layer("MARKINGS")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
-        markings = MarkingObjects.from_features(layer, frame)
+        markings = core.markings.objects.marking_objects.MarkingObjects.from_features(layer, frame)
         edges = call.map_layer("ROAD_EDGES")
         check_layers_on_roads(call, {"ROAD_EDGES": edges}, frame, progress)
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
-        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
-                                  edges=None if edges is None else RoadEdges.from_features(edges, frame).densified(frame), road_points=road_points)
+        lines = core.markings.lines.fit.fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
+                                  edges=edges_of(edges, frame), road_points=road_points)
         call.layer("MARKING_LINES", lines.to_features(frame))
         if call.wants("NAMED_MARKINGS"):
-            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines), frame))
+            kinds = core.markings.lines.fit.named_by_lines(markings, lines)
+            call.layer("NAMED_MARKINGS", core.markings.objects.marking_objects.with_kinds_of(layer, kinds, frame))
 
 
 COLOUR_SETTINGS = settings_of("products.cloud.colours:ColourSettings", "AROUND*")
@@ -202,32 +182,28 @@ class ColoursOfPaint(Algorithm):
         self.add_sink("COLOURED_LINES", fields=[*MARKING_LINES, COLOUR], geometry="LineStringZ", optional=True, look="MARKING_LINES")
 
     def work(self, call, progress):
-        from ..core.io.crs import check_same_crs
-        from ..core.survey.las.reader import read_headers
-        from ..products.cloud.colours import WHITE, YELLOW, PaintColours, add_pixels, add_points, colours_of_lines
-
         markings, lines = (_drawn(call.map_layer(name)) for name in ("MARKINGS", "MARKING_LINES"))
         if not len(markings):
-            raise RoadExtractionError(tr("{label} holds no features, so there is no paint to look at. Choose the layer of a road map.").format(
-                label=call.label("MARKINGS")))
+            raise RoadExtractionError(tr("{label} holds no features, so there is no paint to look at. Choose the layer of a road map.",
+                                         label=call.label("MARKINGS")))
         image = call.raster_in("IMAGE", markings.crs)
         if not image and not call.given("POINT_CLOUDS"):
             raise RoadExtractionError(tr("Nothing shows the colours of the paint. Give point clouds with colours, or an orthoimage."))
-        seen = PaintColours(markings, call.settings(COLOUR_SETTINGS))
+        seen = products.cloud.colours.PaintColours(markings, call.settings(COLOUR_SETTINGS))
         if call.given("POINT_CLOUDS"):
-            files = read_headers(call.point_clouds(), progress.warn)
+            files = core.survey.las.reader.read_headers(call.point_clouds(), progress.warn)
             for file in files:
-                check_same_crs(markings.crs, file.crs, seen.origin, call.label("MARKINGS"))
-            add_points(seen, files, progress.part(0.0, 0.5 if image else 0.95))
+                core.io.crs.check_same_crs(markings.crs, file.crs, seen.origin, call.label("MARKINGS"))
+            products.cloud.colours.add_points(seen, files, progress.part(0.0, 0.5 if image else 0.95))
         if image:
-            add_pixels(seen, image, markings, progress.part(0.5 if call.given("POINT_CLOUDS") else 0.0, 0.95))
+            products.cloud.colours.add_pixels(seen, image, markings, progress.part(0.5 if call.given("POINT_CLOUDS") else 0.0, 0.95))
         colours = seen.colours()
         if not seen.seen.any():
             progress.warn(tr("No coloured point or pixel lies in a marking, so all colours stay open. Check that both show the same road."))
         call.layer("COLOURED_MARKINGS", _with_colours(markings, colours))
         if lines is not None:
-            call.layer("COLOURED_LINES", _with_colours(lines, colours_of_lines(lines, markings, colours)))
-        counts = {"WHITE": int((colours == WHITE).sum()), "YELLOW": int((colours == YELLOW).sum())}
+            call.layer("COLOURED_LINES", _with_colours(lines, products.cloud.colours.colours_of_lines(lines, markings, colours)))
+        counts = {"WHITE": int((colours == products.cloud.colours.WHITE).sum()), "YELLOW": int((colours == products.cloud.colours.YELLOW).sum())}
         return {**counts, "OPEN": len(markings) - sum(counts.values())}
 
 

@@ -16,6 +16,7 @@ from ..core.common.errors import RoadExtractionError
 from ..core.common.texts import told
 from ..core.io.local_files import gdal_exceptions, open_raster
 from ..core.lazy import gdal
+from .rooms import core, products
 from .texts import tr
 
 if TYPE_CHECKING:
@@ -189,9 +190,7 @@ SUFFIXES = (".html", ".htm")
 def sign_report(path: str, facts: Callable[[], list[tuple[str, str]]]) -> None:
     """Write the facts of a run below the title of an HTML report that is complete; files of other kinds stay as they are."""
     if Path(path).suffix.lower() in SUFFIXES:
-        from ..products.report.page import with_facts
-
-        Path(path).write_text(with_facts(Path(path).read_text(encoding="utf-8"), facts()), encoding="utf-8")
+        Path(path).write_text(products.report.page.with_facts(Path(path).read_text(encoding="utf-8"), facts()), encoding="utf-8")
 
 
 def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str, provenance: Provenance) -> list[tuple[str, str]]:
@@ -199,13 +198,11 @@ def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str
 
     Names of files are without their folders, since a report is handed on.
     """
-    from ..core.io.crs import parse_crs
-
     files = [Path(path).name for path in clouds]
-    named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more").format(count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
+    named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more", count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
     facts = [(tr("Survey"), survey), (tr("Point clouds"), named), *_inputs(algorithm, provenance.values),
-             (tr("CRS"), parse_crs(crs).name if crs else ""), (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"),
-             (tr("Settings"), _settings(algorithm, provenance.values)),
+             (tr("CRS"), core.io.crs.parse_crs(crs).name if crs else ""),
+             (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"), (tr("Settings"), _settings(algorithm, provenance.values)),
              *((tr("Warning"), told(text)) for text in provenance.warnings)]
     return [(name, value) for name, value in facts if value]
 

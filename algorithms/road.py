@@ -4,6 +4,7 @@ from contextlib import nullcontext
 
 from ..core.common.features import CURB_POINTS, ROAD_EDGES
 from .algorithm import Algorithm, settings_of
+from .rooms import core, products
 from .survey_input import SURVEY_SETTINGS, add_execution, check_layers_on_roads, frame_of, open_survey_of
 
 SCANLINE_SETTINGS = settings_of("core.road.scanlines.section_planes:ScanlineSettings", "INTERVAL CORRIDOR ROTATION_FREQUENCY*")
@@ -23,16 +24,14 @@ class NormalizedScanlines(Algorithm):
         self.add_output("cloud", "RESAMPLED_POINTS", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..products.scanline_layer import ResampledPoints, write_scanlines
-
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()
         if call.wants("RESAMPLED_POINTS"):
-            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(LAYER_SETTINGS),
-                                     survey.frame.farthest)
+            points = products.scanline_layer.ResampledPoints(
+                call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(LAYER_SETTINGS), survey.frame.farthest)
         layer = call.settings(LAYER_SETTINGS) if call.wants("SCANLINES") else None
         with points as opened:
-            scanlines, _ = write_scanlines(survey, call.settings(SCANLINE_SETTINGS), layer, opened, progress.part(0.5, 1.0))
+            scanlines, _ = products.scanline_layer.write_scanlines(survey, call.settings(SCANLINE_SETTINGS), layer, opened, progress.part(0.5, 1.0))
         call.layer("SCANLINES", scanlines)
 
 
@@ -52,19 +51,14 @@ class BoundariesFromScanlines(Algorithm):
         self.add_sink("BOUNDARIES", fields=ROAD_EDGES, geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ..core.road.scanlines.detect import LayerScanlines, boundary_lines, curbs_from_scanlines
-        from ..core.road.weights import SCANLINE
-        from ..core.survey.adjustment.register import sigma_of_layer
-        from ..products.scanline_layer import scanlines_from_features
-
         settings = call.settings(BOUNDARY_SETTINGS)
         layer = call.map_layer("SCANLINES")
         frame = frame_of(call, layer.crs, progress)
-        frame.pass_sigma = sigma_of_layer(layer)
-        lines, interval = scanlines_from_features(layer, frame)
-        source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
-        corners = curbs_from_scanlines(source, settings, SCANLINE.corner_block, progress.part(0.3, 0.95))
-        lines = boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
+        frame.pass_sigma = core.survey.adjustment.register.sigma_of_layer(layer)
+        lines, interval = products.scanline_layer.scanlines_from_features(layer, frame)
+        source = core.road.scanlines.detect.LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
+        corners = core.road.scanlines.detect.curbs_from_scanlines(source, settings, core.road.weights.SCANLINE.corner_block, progress.part(0.3, 0.95))
+        lines = core.road.scanlines.detect.boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0))
         call.layer("CORNERS", corners.to_features(frame))
         call.layer("BOUNDARIES", lines.to_features(frame))
 
@@ -84,15 +78,12 @@ class DetectCurbs(Algorithm):
         self.add_sink("PRINCIPAL_POINTS", geometry="PointZ", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..core.road.profiles.detect import detect_curbs
-
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         settings = call.settings(CURB_SETTINGS)
         if call.wants("PRINCIPAL_POINTS"):
-            from ..core.road.profiles.detect import find_principal_points
-
-            call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
-        points = detect_curbs(survey, settings, progress.part(0.6, 1.0))
+            call.layer("PRINCIPAL_POINTS", core.road.profiles.detect.find_principal_points(survey, settings, progress.part(0.5, 0.6)))
+        points = core.road.detect_boundaries.find_curb_points(
+            survey, core.road.detect_boundaries.BoundarySettings("profiles", settings), progress.part(0.6, 1.0))["profiles"]
         call.layer("CURB_POINTS", points.to_features(survey.frame))
 
 
@@ -109,13 +100,16 @@ class FitRoadEdges(Algorithm):
         self.add_map_sink("ROAD_EDGES")
 
     def work(self, call, progress):
-        from ..core.road.common.curb_points import CurbPoints
-        from ..core.road.edges.fit import fit_road_edges
-
         layer = call.map_layer("CURB_POINTS")
         frame = frame_of(call, layer.crs, progress, layers={"CURB_POINTS": layer})
-        edges = fit_road_edges(CurbPoints.from_features(layer, frame), frame, call.settings(EDGE_SETTINGS), progress)
+        curbs = core.road.common.curb_points.CurbPoints.from_features(layer, frame)
+        edges = core.road.edges.fit.fit_road_edges(curbs, frame, call.settings(EDGE_SETTINGS), progress)
         call.layer("ROAD_EDGES", edges.to_features(frame))
+
+
+def edges_of(layer, frame):
+    """The layer ROAD_EDGES as RoadEdges with vertices close together; None for None."""
+    return None if layer is None else core.road.edges.road_edges.RoadEdges.from_features(layer, frame).densified(frame)
 
 
 METHOD_SETTING = settings_of("core.road.detect_boundaries:BoundarySettings", "BOUNDARY_METHOD", BOUNDARY_METHOD=dict(
@@ -140,14 +134,12 @@ class DetectBoundaries(Algorithm):
         self.add_map_sink("ROAD_EDGES")
 
     def work(self, call, progress):
-        from ..core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
-        from ..core.road.surface.ground_grid import MeasuredGround
-
-        settings = BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
+        detect = core.road.detect_boundaries
+        settings = detect.BoundarySettings(call.value("BOUNDARY_METHOD"), call.settings(CURB_SETTINGS), call.settings(SCANLINE_METHOD_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
-        ground = MeasuredGround(survey)
-        curbs = find_curb_points(survey, settings, progress.part(0.5, 0.95), ground)
-        boundaries = draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey, ground)
+        ground = core.road.surface.ground_grid.MeasuredGround(survey)
+        curbs = detect.find_curb_points(survey, settings, progress.part(0.5, 0.95), ground)
+        boundaries = detect.draw_boundaries(curbs, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey, ground)
         call.layer("ROAD_EDGES", boundaries.edges.to_features(survey.frame))
 
 
@@ -167,17 +159,13 @@ class ExtractRoadSurface(Algorithm):
         self.add_map_sink("ROAD_SURFACE", optional=True)
 
     def work(self, call, progress):
-        from ..core.road.edges.road_edges import RoadEdges
-        from ..core.road.surface.extract import extract_road_surface
-        from ..core.survey.road_points_las import write_road_points
-
         layer = call.map_layer("ROAD_EDGES")
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         edges = None
         if layer is not None:
             check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame, progress)
-            edges = RoadEdges.from_features(layer, survey.frame)
-        road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
-        write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
+            edges = core.road.edges.road_edges.RoadEdges.from_features(layer, survey.frame)
+        road_points, surface = core.road.surface.extract.extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
+        core.survey.road_points_las.write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
         road_points.close()
         call.layer("ROAD_SURFACE", surface.to_features(survey.frame))

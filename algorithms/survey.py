@@ -3,6 +3,7 @@
 from ..core.common.features import CONTROL_POINTS, ESTIMATED_TRAJECTORY, TRAJECTORY
 from ..core.lazy import np
 from .algorithm import Algorithm, settings_of
+from .rooms import core, products, simulator
 from .survey_input import SURVEY_SETTINGS, imported_trajectory, trajectory_features
 from .texts import tr
 
@@ -21,16 +22,14 @@ class ImportTrajectory(Algorithm):
         self.add_sink("OUTPUT", fields=TRAJECTORY, geometry="PointZ")
 
     def work(self, call, progress):
-        from ..core.survey.trajectory.trajectory import clean_trajectory
-
-        trajectory = clean_trajectory(imported_trajectory(call, progress))
+        trajectory = core.survey.trajectory.trajectory.clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:
             progress.info(note)
         progress.warn_all(trajectory.doubts)
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given. Set CRS of the trajectory, or, where its coordinates are those of the "
                              "point clouds, CRS to bring it to."))
-        progress.info(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
+        progress.info(tr("Trajectory: {count} positions.", count=f"{len(trajectory):,}"))
         call.layer("OUTPUT", trajectory_features(trajectory))
         return {"ROWS": len(trajectory)}
 
@@ -47,15 +46,12 @@ class EstimateTrajectory(Algorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ..core.survey.estimation.estimate import estimate_trajectory
-        from ..products.report.survey import estimated_trajectory_report
-
-        estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
+        estimate = core.survey.estimation.estimate.estimate_trajectory(call.point_clouds(), call.crs(), call.value("SCANNER_FIELD"), progress)
         progress.warn_all(estimate.cloud_notes + estimate.notes)
         track = estimate.trajectory
         progress.info(estimate.summary())
         call.layer("TRAJECTORY", trajectory_features(track, sigma_m=estimate.sigma, sigma_z_m=estimate.sigma_height))
-        call.text("REPORT", estimated_trajectory_report(estimate))
+        call.text("REPORT", products.report.survey.estimated_trajectory_report(estimate))
         values = len(track), estimate.length, len(estimate.scanners), float(np.median(estimate.sigma)), float(np.median(estimate.sigma_height))
         return dict(zip(self.NUMBERS, values))
 
@@ -75,22 +71,19 @@ class InspectSurvey(Algorithm):
         self.add_output("raster", "DENSITY", optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ..products.inspection import NEAR_TRAJECTORY, inspect_survey, write_density
-        from ..products.report.survey import inspection_report
-
-        inspection = inspect_survey(
+        inspection = products.inspection.inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95))
         progress.warn_all(inspection.notes)
         progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
-                        "intensities {darkest} to {brightest}.").format(
-            count=f"{inspection.count:,}", files=len(inspection.files), density=inspection.per_area["mean"], scanners=len(inspection.scanners),
-            darkest=inspection.intensity.nonzero()[0].min(), brightest=inspection.intensity.nonzero()[0].max()))
+                         "intensities {darkest} to {brightest}.", count=f"{inspection.count:,}", files=len(inspection.files),
+                         density=inspection.per_area["mean"], scanners=len(inspection.scanners), darkest=inspection.intensity.nonzero()[0].min(),
+                         brightest=inspection.intensity.nonzero()[0].max()))
         if inspection.near_share is not None:
-            progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
-                near=100 * inspection.near_share, metres=NEAR_TRAJECTORY))
-        call.text("REPORT", inspection_report(inspection))
+            progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.", near=100 * inspection.near_share,
+                             metres=products.inspection.NEAR_TRAJECTORY))
+        call.text("REPORT", products.report.survey.inspection_report(inspection))
         if call.wants("DENSITY"):
-            write_density(inspection, call.new_file("DENSITY"))
+            products.inspection.write_density(inspection, call.new_file("DENSITY"))
         first, last = inspection.time_span or (None, None)
         values = (
             inspection.count, inspection.per_area["mean"], inspection.per_volume["mean"], first, last, len(inspection.scanners),
@@ -128,24 +121,16 @@ class SampleSurvey(Algorithm):
         self.add_sink("UAV_GCPS", geometry="PointZ", optional=True, by_default=False, fields=CONTROL_POINTS)
 
     def work(self, call, progress):
-        from ..simulator.survey import make_sample_survey
-
         settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
-        survey = make_sample_survey(settings, progress.part(0.0, 0.1))
+        survey = simulator.survey.make_sample_survey(settings, progress.part(0.0, 0.1))
         if call.wants("UAV_IMAGE") or call.wants("UAV_GCPS"):
-            from ..simulator.orthophoto import seen_from_above
-
-            seen_from_above(survey)
+            simulator.orthophoto.seen_from_above(survey)
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
-        progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
+        progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.", count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
-            from ..simulator.orthophoto import write_uav_image
-
-            write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
+            simulator.orthophoto.write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
         if call.wants("UAV_GCPS"):
-            from ..simulator.orthophoto import uav_control_points
-
-            call.layer("UAV_GCPS", uav_control_points(survey))
+            call.layer("UAV_GCPS", simulator.orthophoto.uav_control_points(survey))
         call.layer("TRAJECTORY", trajectory_features(survey.trajectory))
         for name in TRUTHS:
             call.layer(name, getattr(survey, name.lower()))

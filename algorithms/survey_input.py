@@ -10,9 +10,10 @@ from glob import glob, has_magic
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from ..core.common.features import CORRECTIONS, Features
+from ..core.common.features import CORRECTIONS, ESTIMATED_TRAJECTORY, TRAJECTORY, Features
 from ..core.lazy import np, shapely
 from .algorithm import settings_of
+from .rooms import core
 from .texts import tr
 from .vector_source import LINE, POINT, vertices_of
 
@@ -38,9 +39,9 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
         if path.is_file():
             files += _clouds([path], "") if path.suffix.lower() == VIRTUAL else [name]
         elif path.is_dir():
-            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
+            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.", label=label, name=name))
         elif has_magic(name):
-            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.").format(label=label, name=name))
+            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.", label=label, name=name))
         else:
             files.append(name)
     return list(dict.fromkeys(files))
@@ -80,10 +81,10 @@ def _named_by(path):
         names = []
     if not names:
         raise RoadExtractionError(tr("{path} names no point clouds as a virtual point cloud does. Make it again in QGIS, or choose the LAS and LAZ "
-                                     "files themselves.").format(path=path))
+                                     "files themselves.", path=path))
     if remote := [name for name in names if "://" in name or name.lower().startswith("/vsi")]:
-        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.").format(
-            path=path, name=remote[0]))
+        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.", path=path,
+                                     name=remote[0]))
     return [os.path.normpath(os.path.join(os.path.dirname(path), name)) for name in names]
 
 
@@ -106,15 +107,12 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
     Without heights, where none are needed, all are 0.
     """
-    from ..core.common.features import ESTIMATED_TRAJECTORY
-    from ..core.survey.trajectory.reader import trajectory_from_columns, trajectory_from_rows
-
     if source.kind == LINE:
         columns = _line_columns(source)
         _refuse_empty(source, len(columns["x"]))
         if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
             columns["z"] = np.zeros(len(columns["x"]))
-        return trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
+        return core.survey.trajectory.reader.trajectory_from_columns(columns, crs or source.stored_crs, label=source.label)
     rows, points = [], []
     for wkb, values in source.stored_rows():
         if wkb or source.kind != POINT:
@@ -127,7 +125,8 @@ def read_trajectory_source(source, crs="", heights_needed=True):
         coordinates["x"], coordinates["y"], z = shapely.get_coordinates(firsts, include_z=True).T
         if source.has_z:
             coordinates["z"] = z
-    trajectory = trajectory_from_rows(source.names, rows, coordinates, crs or source.stored_crs, source.label, heights_needed)
+    trajectory = core.survey.trajectory.reader.trajectory_from_rows(
+        source.names, rows, coordinates, crs or source.stored_crs, source.label, heights_needed)
     # Estimate trajectory writes the ridge of a cloud without times with its uncertainty, and does not know which way it was driven
     estimated = {column.name for column in ESTIMATED_TRAJECTORY} <= set(source.names)
     return replace(trajectory, way_known=False) if estimated and not trajectory.has_time else trajectory
@@ -135,8 +134,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
 def _refuse_empty(source, count):
     if not count:
-        raise RoadExtractionError(
-            tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label))
+        raise RoadExtractionError(tr("{label} has no rows. Choose the layer that holds the driven positions.", label=source.label))
 
 
 def _line_columns(source):
@@ -151,11 +149,8 @@ def trajectory_features(trajectory, **further):
 
     `further` columns, name to (N,) values, belong to an estimated trajectory.
     """
-    from ..core.common.features import ESTIMATED_TRAJECTORY, TRAJECTORY, Features
-    from ..core.io.crs import parse_crs
-
     placed = [(None, None, None)] * len(trajectory)
-    if not trajectory.crs or not parse_crs(trajectory.crs).is_geographic:
+    if not trajectory.crs or not core.io.crs.parse_crs(trajectory.crs).is_geographic:
         placed = _road_pass_station(trajectory)
     points = shapely.points(np.c_[trajectory.x, trajectory.y, trajectory.z])
     columns = (trajectory.time if trajectory.has_time else np.full(len(trajectory), np.nan),
@@ -172,10 +167,8 @@ def trajectory_features(trajectory, **further):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
-    from ..core.survey.frame.road_frame import build_frame
-
     locations = [(None, None, None)] * len(trajectory)
-    for driven in build_frame(trajectory).passes:
+    for driven in core.survey.frame.road_frame.build_frame(trajectory).passes:
         rows = np.flatnonzero((trajectory.time >= driven.time[0]) & (trajectory.time <= driven.time[-1]))
         for row, station in zip(rows, driven.station_at(trajectory.time[rows])):
             locations[row] = (driven.road, driven.number, float(station))
@@ -196,10 +189,9 @@ def estimated_trajectory(call, progress):
     """The EstimatedTrajectory of POINT_CLOUDS where TRAJECTORY was left out, None where it was given; says so in the log."""
     if call.given("TRAJECTORY"):
         return None
-    from ..core.survey.estimation.estimate import estimate_trajectory
-
     progress.info(tr("No trajectory was given; it is estimated from the points …"))
-    estimate = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)
+    scanner_field = call.settings(SURVEY_SETTINGS).scanner_field
+    estimate = core.survey.estimation.estimate.estimate_trajectory(call.point_clouds(), call.crs(), scanner_field, progress)
     progress.warn_all(estimate.notes)
     progress.info(estimate.summary())
     return estimate
@@ -219,36 +211,30 @@ def execution_of(call):
 
 def survey_inputs(call):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
-    from ..core.survey.las.reader import read_headers
-    from ..core.survey.trajectory.trajectory import reproject_trajectory
-
     paths = call.point_clouds()
-    clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
-    return paths, reproject_trajectory(call.trajectory(), clouds)
+    clouds = next((header.crs for header in core.survey.las.reader.read_headers(paths) if header.crs), "") or call.crs()
+    return paths, core.survey.trajectory.trajectory.reproject_trajectory(call.trajectory(), clouds)
 
 
 def open_survey_of(call, progress, **reading):
     """The survey of POINT_CLOUDS and TRAJECTORY, open until the run ends; `reading` are settings that users are not asked for."""
-    from ..core.survey.open_survey import open_survey
-
     paths, trajectory = survey_inputs(call)
-    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs(), **reading), progress, execution_of(call))
+    settings = call.settings(SURVEY_SETTINGS, crs=call.crs(), **reading)
+    survey = core.survey.open_survey.open_survey(paths, trajectory, settings, progress, execution_of(call))
     call.at_end(survey.store.close)
     return survey
 
 
 def open_survey_with(call, layers, progress, **reading):
     """The survey as of `open_survey_of`, on whose roads and in whose CRS the layers lie; of `layers`, those without features become None."""
-    from ..core.io.crs import check_same_crs
-
     for name, features in layers.items():
         if features is not None and not len(features):
-            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
+            progress.warn(tr("{label} holds no features and is not used.", label=call.label(name)))
             layers[name] = None
     survey = open_survey_of(call, progress, **reading)
     for name, features in layers.items():
         if features is not None:
-            check_same_crs(features.crs, survey.crs, shapely.get_coordinates(features.geometries[0])[0], call.label(name))
+            core.io.crs.check_same_crs(features.crs, survey.crs, shapely.get_coordinates(features.geometries[0])[0], call.label(name))
     check_layers_on_roads(call, layers, survey.frame, progress)
     return survey
 
@@ -258,12 +244,10 @@ def check_layers_on_roads(call, layers, frame, progress):
 
     What lies far from its roads is left out, with a warning.
     """
-    from ..core.survey.consistency import check_features_on_roads, keep_near_roads
-
     for name, features in layers.items():
         if features is not None:
-            check_features_on_roads(features, frame, call.label(name))
-            if note := keep_near_roads(features, frame, call.label(name)):
+            core.survey.consistency.check_features_on_roads(features, frame, call.label(name))
+            if note := core.survey.consistency.keep_near_roads(features, frame, call.label(name)):
                 progress.warn(note)
 
 
@@ -272,30 +256,24 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.adjustment.register import sigma_of_layer
-    from ..core.survey.consistency import check_road_points_on_roads
-    from ..core.survey.frame.road_frame import build_frame
-    from ..core.survey.trajectory.trajectory import reproject_trajectory
-
-    trajectory = reproject_trajectory(call.trajectory(), crs)
+    trajectory = core.survey.trajectory.trajectory.reproject_trajectory(call.trajectory(), crs)
     has_time = trajectory.has_time
     if road_points is not None and has_time:
         trajectory, has_time = _on_clock_of(road_points, trajectory, progress)
-    frame = build_frame(trajectory)
+    frame = core.survey.frame.road_frame.build_frame(trajectory)
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
     # what passes differ by is seen where the points are read; here it comes with what was made of them
-    frame.pass_sigma = {road: sigma for sigmas in ([road_points.pass_sigma] if road_points is not None else [])
-                        + [sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None] for road, sigma in sigmas.items()}
+    known = [road_points.pass_sigma] if road_points is not None else []
+    known += [core.survey.adjustment.register.sigma_of_layer(layer) for layer in (layers or {}).values() if layer is not None]
+    frame.pass_sigma = {road: sigma for sigmas in known for road, sigma in sigmas.items()}
     check_layers_on_roads(call, layers or {}, frame, progress)
     if road_points is not None:
-        check_road_points_on_roads(road_points, frame, tr("The points"))
+        core.survey.consistency.check_road_points_on_roads(road_points, frame, tr("The points"))
     return frame
 
 
 def _on_clock_of(road_points, trajectory, progress):
     """The trajectory in the points' time system, and whether the points have time at all."""
-    from ..core.survey.trajectory.time_systems import align_time
-
     first, last = float("inf"), float("-inf")
     for road, number in road_points.all_sections():
         time = road_points.section(road, number).time
@@ -305,7 +283,7 @@ def _on_clock_of(road_points, trajectory, progress):
             return trajectory, True
     if not first < last:
         return trajectory, not len(road_points)
-    offset, note = align_time(trajectory.time, (first, last))
+    offset, note = core.survey.trajectory.time_systems.align_time(trajectory.time, (first, last))
     if note:
         progress.info(note)
     return trajectory.shifted(offset), True
@@ -313,9 +291,7 @@ def _on_clock_of(road_points, trajectory, progress):
 
 def road_points_of(call, name, progress):
     """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
-    from ..core.survey.road_points_las import read_road_points
-
-    return read_road_points(call.cloud(name), progress)
+    return core.survey.road_points_las.read_road_points(call.cloud(name), progress)
 
 
 def bright_road_points_of(call, name, progress):
@@ -324,42 +300,35 @@ def bright_road_points_of(call, name, progress):
     sections = (road_points.section(*key).intensity for key in road_points.all_sections())
     values = [(section.min(), section.max()) for section in sections if len(section)]
     if values and min(low for low, _ in values) == max(high for _, high in values):
-        raise RoadExtractionError(
-            tr("{path} has no intensity (all values are the same), so it shows no paint. Export the point clouds with intensity, or make the points "
-               "again with INTENSITY_FROM set to rgb.").format(path=call.cloud(name)))
+        raise RoadExtractionError(tr("{path} has no intensity (all values are the same), so it shows no paint. Export the point clouds with "
+                                     "intensity, or make the points again with INTENSITY_FROM set to rgb.", path=call.cloud(name)))
     return road_points
 
 
 def paint_of(call, name, progress):
     """A LAZ file of marking points; a road without paint gives one without points, and that is a result too."""
-    from ..core.survey.las.reader import cloud_crs, open_cloud
-    from ..core.survey.store.road_points import RoadPoints
-
-    with open_cloud(call.cloud(name)) as reader:
+    with core.survey.las.reader.open_cloud(call.cloud(name)) as reader:
         if reader.header.point_count:
             return road_points_of(call, name, progress)
         columns = set(reader.header.point_format.dimension_names)
-        points = RoadPoints.empty_like(origin=reader.header.offsets, crs=cloud_crs(reader.header))
+        crs = core.survey.las.reader.cloud_crs(reader.header)
+        points = core.survey.store.road_points.RoadPoints.empty_like(origin=reader.header.offsets, crs=crs)
         points.has_corrected, points.has_cluster = "intensity_corrected" in columns, "cluster" in columns
-        progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
+        progress.warn(tr("{label} holds no points: no paint was found on this road.", label=call.label(name)))
         return points
 
 
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
-    from ..core.survey.las.reader import read_headers
-    from ..core.survey.open_survey import match_clocks
-    from ..core.survey.trajectory.trajectory import reproject_trajectory, taken_to_be_in
-
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.value("COLUMNS"))
-    headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
+    headers = core.survey.las.reader.read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
     if target and not trajectory.crs:
         progress.warn(tr("The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are."))
-        trajectory = replace(taken_to_be_in(trajectory, target), crs=target)
-    trajectory = reproject_trajectory(trajectory, target)
+        trajectory = replace(core.survey.trajectory.trajectory.taken_to_be_in(trajectory, target), crs=target)
+    trajectory = core.survey.trajectory.trajectory.reproject_trajectory(trajectory, target)
     if headers:
-        trajectory, note, *_ = match_clocks(headers, trajectory, call.settings(SURVEY_SETTINGS), progress)
+        trajectory, note, *_ = core.survey.open_survey.match_clocks(headers, trajectory, call.settings(SURVEY_SETTINGS), progress)
         if note:
             progress.info(note)
     return trajectory
@@ -384,8 +353,8 @@ def read_corrections(source):
     index = {name.lower(): k for k, name in enumerate(source.names)}
     missing = [name for name in NEEDED if name not in index]
     if missing:
-        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or "
-                                     "give it the fields action and target.").format(label=source.label, fields=", ".join(missing)))
+        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or give "
+                                     "it the fields action and target.", label=source.label, fields=", ".join(missing)))
     columns = [column for column in CORRECTIONS if column.name in index]
     result = Features("any", list(CORRECTIONS), crs=source.crs)
     for wkb, values in source.rows(check_validity=False):

@@ -4,12 +4,26 @@ import json
 import re
 from functools import cache
 from pathlib import Path
+from string import Formatter
 
-from ..core.common.texts import CoreMessages, set_translation, told, tr
+from ..core.common.texts import CoreMessages, numbers, set_translation, told, tr
 
-__all__ = ["languages", "speak", "told", "tr"]
+__all__ = ["languages", "numbers", "speak", "told", "tr"]
 
 TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
+
+
+class _Phrase(str):
+    """A translation that takes values: those that are numbers have the user's signs."""
+
+    def format(self, *args, **values):
+        return _Values().vformat(self, args, values)
+
+
+class _Values(Formatter):
+    def format_field(self, value, spec):
+        text = super().format_field(value, spec)
+        return numbers(text) if not isinstance(value, str) or text[:1].isdigit() and " " not in text else text
 
 
 def languages():
@@ -30,9 +44,11 @@ def speak(language="en"):
     texts = json.loads((TRANSLATIONS / f"lanewright_{short}.json").read_text(encoding="utf-8"))
 
     def translated(text):
-        return texts.get(text) or text
+        text = texts.get(text) or text
+        return _Phrase(text) if "{" in text else text
 
-    set_translation(translated, CoreMessages(TRANSLATIONS / f"core_{short}.json", translated).told, short)
+    messages = CoreMessages(TRANSLATIONS / f"core_{short}.json", lambda word: numbers(translated(word)))
+    set_translation(translated, messages.told, short)
     return True
 
 

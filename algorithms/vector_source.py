@@ -5,6 +5,7 @@ from dataclasses import replace
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
 from ..core.lazy import np, shapely
+from .rooms import core
 from .texts import tr
 
 POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unknown"
@@ -39,15 +40,11 @@ class VectorSource:
     @property
     def crs(self):
         """WKT, metric, of the CRS of `rows`; "" where unknown."""
-        from ..core.io.crs import in_metres
-
-        return in_metres(self.stored_crs)[0]
+        return core.io.crs.in_metres(self.stored_crs)[0]
 
     def rows(self, measures=False, check_validity=True):
         """The rows as `stored_rows` gives them, coordinates in metres; RoadExtractionError where a geometry cannot be that of a place."""
-        from ..core.io.crs import in_metres
-
-        units, rows = in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
+        units, rows = core.io.crs.in_metres(self.stored_crs)[1], _checked(self, self.stored_rows(measures, check_validity))
         return rows if units.metric else ((wkb and scaled_wkb(wkb, units.across, units.up), values) for wkb, values in rows)
 
     def kind_label(self, kind):
@@ -70,9 +67,9 @@ def _checked(source, rows):
     problems.update((drawn[k], tr("coordinates that lie nowhere on earth")) for k in np.unique(owner[wrong]).tolist())
     if problems:
         first = min(problems)
-        raise RoadExtractionError(
-            tr("{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair or delete "
-               "them.").format(label=source.label, count=len(problems), total=len(read), problem=problems[first], id=ids[first]))
+        raise RoadExtractionError(tr("{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair "
+                                     "or delete them.", label=source.label, count=len(problems), total=len(read), problem=problems[first],
+                                     id=ids[first]))
     return iter(read)
 
 
@@ -81,10 +78,8 @@ def _value(column, value, label):
     try:
         return column.type(value)
     except (TypeError, ValueError, OverflowError):
-        raise RoadExtractionError(
-            tr("{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.").format(
-                label=label, value=value, field=column.name)
-        ) from None
+        raise RoadExtractionError(tr("{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.",
+                                     label=label, value=value, field=column.name)) from None
 
 
 def read_features(source, schema, geometry_type):
@@ -96,9 +91,8 @@ def read_features(source, schema, geometry_type):
     indices = _columns(source, schema)
     needed = KIND_OF[geometry_type]
     if geometry_type != "None" and source.kind != needed:   # a layer that another stage made
-        raise RoadExtractionError(
-            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
+        raise RoadExtractionError(tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.",
+                                     label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
     measured = geometry_type.endswith("ZM")
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
@@ -116,9 +110,7 @@ def read_features(source, schema, geometry_type):
             continue
         for part in shapely.get_parts(shapely.from_wkb(wkb)):
             if not part.has_z or np.isnan(shapely.get_coordinates(part, include_z=True)).any():
-                raise RoadExtractionError(
-                    tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
-                        label=source.label))
+                raise RoadExtractionError(tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.", label=source.label))
             result.add(part, **row)
     return result
 
@@ -130,9 +122,8 @@ def _columns(source, schema):
     indices = [index_by_name.get(column.name, index_by_name.get(column.name.lower())) for column in schema]
     missing = [column.name for column, k in zip(schema, indices) if k is None and column.needed]
     if missing:
-        raise RoadExtractionError(
-            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=source.label, fields=", ".join(missing)))
+        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.", label=source.label,
+                                     fields=", ".join(missing)))
     return indices
 
 
@@ -140,8 +131,7 @@ def _measured_parts(wkb, label):
     """WKB of every part of a line geometry with Z and M: shapely before 2.1 would lose the M."""
     _, has_z, has_m = _type_of(wkb, 0)
     if not (has_z and has_m):
-        raise RoadExtractionError(
-            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label))
+        raise RoadExtractionError(tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.", label=label))
     for first_byte, count, *_ in _runs(wkb):
         yield wkb[first_byte - 9:first_byte + 32 * count]   # with its byte order, type and count
 
@@ -183,9 +173,7 @@ def _runs(wkb, at=0):
 
 def in_file_units(features):
     """A layer that is to be written, in the units of the survey's own CRS."""
-    from ..core.io.crs import as_in_file
-
-    wkt, units = as_in_file(features.crs)
+    wkt, units = core.io.crs.as_in_file(features.crs)
     if units.metric:
         return features
     if features.geometry_type.endswith("ZM"):
@@ -224,9 +212,7 @@ def _uint(wkb, at):
 
 def crs_to_write(features, driver):
     """WKT of the CRS that a file of an OGR driver gets; "" for none, for which a GeoPackage has an entry that is not geographic."""
-    from ..core.io.crs import UNDEFINED_CARTESIAN
-
-    return features.crs or (UNDEFINED_CARTESIAN if driver == "GPKG" and features.geometry_type != "None" else "")
+    return features.crs or (core.io.crs.UNDEFINED_CARTESIAN if driver == "GPKG" and features.geometry_type != "None" else "")
 
 
 def plain_value(value):

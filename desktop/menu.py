@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..algorithms.destinations import destination_path
 from ..algorithms.export import DRAWN
-from ..core.pipeline.kept_run import WINDOW
+from ..core.execution.keep import WINDOW
 from ..processing_provider.results.road_maps import (
     NAMES_ONLY,
     REPLACES_LAST_RUN,
@@ -51,7 +51,7 @@ class Menu(QObject):
         self.actions = []
         self.dialog = self.designer = None  # kept, or Python would collect the open windows
         self.section = self.doubts = self.pairs = self.swipe = None
-        WINDOW.begin()
+        WINDOW.wanted = True
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon

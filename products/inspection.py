@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..core.common.errors import RoadExtractionError
@@ -299,11 +300,8 @@ def _profile(driven, track_z, at, heights, drops, height):
     if height is not None:
         near = np.abs(drops - height) < READING.height_peak_reach
         cell = np.rint(at[near] / PROFILE_STEP).astype(np.int64)
-        order = np.lexsort((heights[near], cell))
-        cell, z = cell[order], heights[near][order]
-        starts = np.flatnonzero(np.r_[True, np.diff(cell) > 0]) if len(cell) else np.empty(0, np.int64)
-        counts = np.diff(np.r_[starts, len(cell)])
-        road[cell[starts]] = z[starts + counts // 2]
+        seen = np.unique(cell)
+        road[seen] = ndimage.median(heights[near], cell, seen) if len(seen) else np.nan
     return np.c_[places, np.interp(places, driven, track_z), road]
 
 

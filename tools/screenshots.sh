@@ -22,7 +22,7 @@ for language in ${LANEWRIGHT_LANG:-en de}; do
   mkdir -p "$LANEWRIGHT_PICTURES"
   rm -rf "$QGIS_CUSTOM_CONFIG_PATH" "$LANEWRIGHT_SAID"
   QT_QPA_PLATFORM=offscreen qgis_process plugins enable lanewright >/dev/null 2>&1
-  DISPLAY=":$number" LANG=en_US.UTF-8 timeout 1800 qgis --nologo --noversioncheck --lang "$language" \
+  DISPLAY=":$number" LANG="$language.UTF-8" timeout 1800 qgis --nologo --noversioncheck --lang "$language" \
     --code "$LANEWRIGHT_ROOT/tools/screenshots.py" >"$LANEWRIGHT_BUILD/screenshots.log" 2>&1 || true
   cat "$LANEWRIGHT_SAID" 2>/dev/null
   grep -q '^finished$' "$LANEWRIGHT_SAID" 2>/dev/null ||

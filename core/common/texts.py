@@ -26,9 +26,10 @@ def set_translation(translate: Callable[[str], str] | None, tell: Callable[[str]
     _translate, _tell, _language = translate, tell, language
 
 
-def tr(text: str) -> str:
-    """A text as it stands in the code, in the user's language."""
-    return text if _translate is None else _translate(text)
+def tr(text: str, /, **values: Any) -> str:
+    """A text as it stands in the code, in the user's language, with values filled in where there are any."""
+    translated = text if _translate is None else _translate(text)
+    return translated.format(**values) if values else translated
 
 
 def told(sentence: str) -> str:
@@ -39,6 +40,14 @@ def told(sentence: str) -> str:
 def language() -> str:
     """Two letters: that of the texts."""
     return _language
+
+
+_NUMBER = re.compile(r"(?<![^\s(+±–-])(?:\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+\.\d+)(?=[)%°;:,.]*(?:[\s–/]|$))")
+
+
+def numbers(text: str) -> str:
+    """A text whose numbers have the user's signs: 1.042,5 in German for 1,042.5; what is no number of its own, as in 0.2.0, stays."""
+    return text if language() == "en" else _NUMBER.sub(lambda number: number[0].translate({44: ".", 46: ","}), text)
 
 
 # The values of fields in the user's words. In English they are shown as they stand in the layers.
@@ -70,7 +79,7 @@ def vocabulary() -> dict[str, str]:
 # and written anew.
 
 BRACES = "{}"
-AMOUNT = re.compile(r"([\d.,]+ \S+ )([a-z]+)")  # 12 m measured
+AMOUNT = re.compile(r"[-+±]?[\d.,]+ \S+( [a-z]+)?")  # 12.3 m, 12 m measured
 PHRASE = 2  # derived: blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
 _METRES = r"(-?\d+(?:\.\d+)?)"
@@ -96,7 +105,7 @@ class CoreMessages:
     """Sentences of the core and their translations; `{}` stands for a number, a name or a phrase that is a text of the core itself.
 
     path : JSON, {English: translation}, with as many places in the same order; an empty one is none, as is a file that is not there
-    word : from a single word that is put in, such as a side, to that of the language
+    word : from a single word or number that is put in, such as a side, to that of the language
     """
 
     def __init__(self, path: Path, word: Callable[[str], str] = str):
@@ -133,10 +142,8 @@ class CoreMessages:
 
     def _value(self, value):
         """What stands in a place: a word, a phrase, or several with commas or semicolons between them."""
-        if value.isalpha():
-            return self.word(value)
         if " " not in value.strip():
-            return value
+            return self.word(value)
         if "; " in value:   # a list whose parts are known, such as places, is none of them
             parts = [(part, self._value(part)) for part in value.split("; ")]
             if all(shown != part for part, shown in parts):
@@ -145,8 +152,7 @@ class CoreMessages:
         return translated if translated != value else ", ".join(map(self._part, value.split(", ")))
 
     def _part(self, part):
-        amount = AMOUNT.fullmatch(part)
-        return amount.group(1) + self.word(amount.group(2)) if amount else self.told(part)
+        return " ".join(map(self.word, part.split(" "))) if AMOUNT.fullmatch(part) else self.told(part)
 
     @cached_property
     def _sentences(self):

@@ -251,8 +251,8 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     # a curb that a lane reaches to shows its place too
-    room = boundaries.d[span.left, rows] - boundaries.d[span.right, rows]
-    reaches = BARE in made_of or not beside_surface_end(*made_of) and np.nanmedian(np.abs(room - width * span.count)) < SAME_LANE
+    reaches = BARE in made_of or beside_one and not beside_surface_end(*made_of) \
+        and np.nanmedian(np.abs(boundaries.d[span.left, rows] - boundaries.d[span.right, rows] - width * span.count)) < SAME_LANE
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
     values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence)

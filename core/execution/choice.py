@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from .cluster import Cluster, check_address, cluster_of
+from .keep import Keep, work_folder
 from .phase import Executor, Threads
 from .processes import WorkerProcesses
 from .tasks import find_interpreter
 from .weights import EXECUTION
-from .work_folder import KeptResults, WorkFolder
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class ExecutionSettings:
     """
 
     workers: int = setting(0, 0, 256, "The number of workers", "", "for the automatic choice")
-    work_folder: str = ""   # folder in which the points that were read and the results of phases are kept for later runs; "" for none
+    work_folder: str = ""   # folder in which results are kept for later runs; "" for none
     scheduler: str = ""   # address of a running Dask scheduler whose workers do the work instead; "" for none
     insecure: bool = False   # whether the connection to it may go unencrypted beyond this computer
 
@@ -34,9 +35,9 @@ class ExecutionSettings:
             check_address(self.scheduler, self.insecure)
 
     @property
-    def work(self) -> WorkFolder | None:
+    def work(self) -> Path | None:
         """The work folder, if there is one; refused where nothing can be written there."""
-        return WorkFolder(self.work_folder) if self.work_folder else None
+        return work_folder(self.work_folder) if self.work_folder else None
 
 
 def cluster_for(settings: ExecutionSettings, progress: Progress = Progress()) -> Cluster | None:
@@ -49,7 +50,7 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
     """The executor of a run over files with so many points; close it at the end. `cluster` is the result of `cluster_for`."""
     executor: Executor = cluster or _executor_for(points, settings, progress)
     work = settings.work
-    return KeptResults(executor, work) if work else executor
+    return Keep(executor, work) if work else executor
 
 
 def automatic_workers(points: int) -> int:
@@ -79,4 +80,4 @@ def _executor_for(points, settings, progress):
         progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do their work.")
         return Threads()
     progress.info(f"The work is shared among {workers} worker process(es), {interpreter}.")
-    return WorkerProcesses(interpreter, workers, settings.work.path if settings.work else None)
+    return WorkerProcesses(interpreter, workers, settings.work)

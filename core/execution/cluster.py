@@ -21,12 +21,12 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
 from .folder_executor import FolderExecutor, Work
-from .tasks import BEAT, NEEDED, items_done_here, look_around, sees_files, versions
+from .keep import work_folder_error
+from .tasks import BEAT, NEEDED, code_digest, items_done_here, look_around, sees_files, versions
 from .weights import EXECUTION
-from .work_folder import WorkFolder, code_digest
 
 
-def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
+def cluster_of(address: str, insecure: bool, work: Path | None, progress: Progress = Progress()) -> Cluster:
     """The cluster of a running scheduler, checked and ready for work; close it at the end.
 
     address, insecure : as of `client_of`
@@ -40,9 +40,9 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
         workers = wait_for_workers(client, progress)
         _check_versions(client)
         try:
-            cluster = Cluster(client, work.path if work else None, sum(workers.values()))
+            cluster = Cluster(client, work, sum(workers.values()))
         except OSError as error:
-            raise (work.error(error) if work else _disk_error(tempfile.gettempdir(), error)) from error
+            raise (work_folder_error(work, error) if work else _disk_error(tempfile.gettempdir(), error)) from error
         _check_workers(client, cluster.folder, BEAT, work is not None, progress)
     except BaseException:
         (cluster or client).close()

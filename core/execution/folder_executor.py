@@ -18,7 +18,7 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
-from .phase import Executor, Phase, name_of, read_plain, write_plain
+from .phase import Executor, Phase, name_of, paths_of, read_plain, read_results, write_plain
 from .weights import EXECUTION
 
 
@@ -28,9 +28,9 @@ class KilledWorker(Exception):
 
 @dataclass
 class _Part:
-    """What becomes of an item of a phase, or of half of one, in a file."""
+    """What becomes of an item of a phase, or of half of one, in a file, or in a list of files."""
 
-    file: Path
+    file: Any
     whole: _Part | None = None
     halves: tuple[_Part, ...] = ()
     done: bool = False
@@ -80,7 +80,7 @@ class FolderExecutor(Executor):
         """One sentence about workers who ended, or ran out of memory, at a stretch of road."""
         raise NotImplementedError
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Successive ones go to one worker together.
 
         Raises RoadExtractionError of the phase; or if workers ended at half an item, the scheduler is lost, or the folder cannot be used.
@@ -147,7 +147,8 @@ class Work:
             check_cancelled()
             task, file = parts[k:k + together], self.executor.new_file()
             write_plain(file, list(islice(items, len(task))))
-            future = self.pool.submit(self.executor.task(), str(self.shipped), str(file), [str(part.file) for part in task])
+            future = self.pool.submit(self.executor.task(), str(self.shipped), str(file),
+                                      [[*map(str, part.file)] if isinstance(part.file, list) else str(part.file) for part in task])
             self.pending[future] = task, file
             future.add_done_callback(self._ended.put)
 
@@ -213,6 +214,6 @@ class Work:
 
     def result(self, part: _Part) -> Any:
         until = time.monotonic() + EXECUTION.result_time
-        while not part.file.exists() and time.monotonic() < until:
+        while not all(path.exists() for path in paths_of(part.file)) and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
-        return read_plain(part.file)
+        return read_results(part.file)

@@ -108,30 +108,35 @@ class Executor:
 
     folder: Path | None = None
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
 
         phase, items : the work
-        keep : a file for every item, which the executor may write the result to as soon as it is computed; it stays
+        keep : a file for every item, or a list of files where its result is a list, which is written as soon as it is computed, and stays
 
         Raises Cancelled if the user cancelled.
         Raises Exception: whatever the function raises.
         """
         raise NotImplementedError
 
-    def run_together(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+    def run_together(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
         """Yield the results of all items, of which the function may be given lists."""
         if not phase.listed:
-            yield from self.run(phase, items, progress)
+            yield from self.run(phase, items, progress, keep)
             return
         size = max(min(phase.listed, len(items) // EXECUTION.least_tasks), 1)
         lists = Items(-(-len(items) // size), lambda k: [items[number] for number in range(k * size, min((k + 1) * size, len(items)))])
-        for results in self.run(phase, lists, progress):
+        for results in self.run(phase, lists, progress, [list(keep[k:k + size]) for k in range(0, len(keep), size)]):
             yield from results
 
-    def passing(self) -> Executor:
-        """Who runs phases whose results are not worth keeping for a later run."""
-        return self
+    def discard(self, files: Sequence[Path]) -> None:
+        """Remove files of points that no phase reads any more."""
+        for file in files:
+            file.unlink(missing_ok=True)
+
+    def in_threads(self) -> Executor:
+        """Who runs phases that workers cannot."""
+        return THREADS
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         """One sentence about the folder, which cannot be used."""
@@ -219,15 +224,33 @@ def _contents(value):
                                                                   for array, last in zip(arrays, turned))]
 
 
-def read_plain(path: Path) -> Any:
-    """The value that `write_plain` wrote.
+def write_results(file: Any, value: Any, unfinished_in: Path | None = None) -> None:
+    """Write the result of an item to a file, or those of a list of items to a list of files."""
+    for path, one in zip(paths_of(file), value if isinstance(file, list) else [value]):
+        write_plain(path, one, unfinished_in)
+
+
+def read_results(file: Any) -> Any:
+    """What `write_results` wrote."""
+    return [read_plain(path) for path in file] if isinstance(file, list) else read_plain(file)
+
+
+def paths_of(file: Any) -> list[Path]:
+    """The file of a result, or those of a list of results."""
+    return [*map(Path, file)] if isinstance(file, list) else [Path(file)]
+
+
+def read_plain(path: Path, see: Callable[[str], None] = lambda text: None) -> Any:
+    """The value that `write_plain` wrote; `see` is given the JSON text of all but its arrays.
 
     Raises OSError if the file cannot be read, is none of these, or not as it was written.
     """
     content = _content(path)
     (length,) = TEXT_LENGTH.unpack_from(content)
     place = TEXT_LENGTH.size + length
-    tree, layouts = json.loads(content[TEXT_LENGTH.size:place])
+    text = content[TEXT_LENGTH.size:place].decode()
+    see(text)
+    tree, layouts = json.loads(text)
     arrays = {}
     for k, (kind, shape, last) in enumerate(layouts):
         dtype = np.lib.format.descr_to_dtype(kind if isinstance(kind, str) else [tuple(column) for column in kind])
@@ -236,15 +259,6 @@ def read_plain(path: Path) -> Any:
         array: np.ndarray = np.ndarray(shape[::-1] if last else shape, dtype, content, place).copy()
         arrays[f"a{k}"], place = array.T if last else array, place + array.nbytes
     return _value(tree, arrays)
-
-
-def is_whole(path: Path) -> bool:
-    """Whether a file is there as `write_plain` wrote it, which it may not be after the power failed."""
-    try:
-        _content(path)
-    except OSError:
-        return False
-    return True
 
 
 def _content(path):
@@ -264,6 +278,19 @@ def checksum(file: BinaryIO, count: int = -1) -> int:
     while data := file.read(min(CHECKED_AT_ONCE, count) if count >= 0 else CHECKED_AT_ONCE):
         check, count = zlib.crc32(data, check), count - len(data) if count >= 0 else count
     return check
+
+
+SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
+
+
+def is_sealed(path: Path) -> bool:
+    """Whether a file is there and ends with the SEAL of what comes before, which it may not after the power failed."""
+    try:
+        with open(path, "rb", buffering=0) as file:
+            end = os.fstat(file.fileno()).st_size - SEAL.size
+            return end >= 0 and checksum(file, end) == SEAL.unpack(file.read(SEAL.size))[0]
+    except OSError:
+        return False
 
 
 def digest(value: Any, without: str = "") -> str:
@@ -361,8 +388,15 @@ class Threads(Executor):
     def __init__(self, count: int | None = None):
         self.count = count
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
-        return ordered_map(phase.result, items, progress, self.count)
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
+        def kept(numbered):
+            item, file = numbered
+            result = phase.result(item)
+            if keep:
+                write_results(file, result)
+            return result
+
+        return ordered_map(kept, Items(len(items), lambda k: (items[k], keep[k] if keep else None)), progress, self.count)
 
 
 THREADS = Threads()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -22,21 +23,31 @@ from uuid import uuid4
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.parallel import cancellation_scope, free_memory, is_lack_of_memory, reuse_freed_memory, trim_heap
 from ..common.progress import Progress
-from .phase import named, read_plain, write_plain
+from .phase import named, paths_of, read_plain, write_results
 from .weights import EXECUTION
-from .work_folder import code_digest
 
 _lock = threading.Lock()
 _open: OrderedDict[str, tuple[Any, Any, tuple[Any, ...]]] = OrderedDict()
 _sources: dict[Any, Any] = {}   # sources that several phases share, by the keys of their recipes
 
 
-def items_done(phase: str, items: str, results: Sequence[str]) -> dict[str, Any]:
+@lru_cache(maxsize=1)
+def code_digest() -> str:
+    """A digest of the code that phases run, with its tables: other code may give other results."""
+    package = Path(__file__).resolve().parents[2]
+    sha = hashlib.sha256()
+    files = (path for folder in ("core", "products") for path in (package / folder).rglob("*") if path.suffix in (".py", ".json", ".txt"))
+    for path in sorted(files):
+        sha.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return sha.hexdigest()
+
+
+def items_done(phase: str, items: str, results: Sequence[Any]) -> dict[str, Any]:
     """Compute some items of a phase, one after the other, but for those whose results are there.
 
     phase : file of the "module:name" of its function, the Recipe of its source and its arguments; the phase is wanted as long as it is there
     items : file of the list of the items
-    results : files that their results are written to; unfinished, they lie beside the phase
+    results : files that their results are written to, or lists of files for lists of results; unfinished, they lie beside the phase
 
     Returns empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words; and the number of the item that
     it is about as "at": those before it are computed, those after it not.
@@ -44,10 +55,10 @@ def items_done(phase: str, items: str, results: Sequence[str]) -> dict[str, Any]
     at = 0
     try:
         with cancellation_scope(_WhileWanted(Path(phase))):
-            for item, result in zip(read_plain(Path(items)), map(Path, results)):
-                if not result.exists():
+            for item, result in zip(read_plain(Path(items)), results):
+                if not all(path.exists() for path in paths_of(result)):
                     function, source, arguments = _phase(phase)
-                    write_plain(result, function(source, item, *arguments), Path(phase).parent)
+                    write_results(result, function(source, item, *arguments), Path(phase).parent)
                 at += 1
     except RoadExtractionError as error:
         return {"at": at, "refused": str(error)}
@@ -131,7 +142,7 @@ def sees_files(sizes: dict[str, int]) -> bool:
         os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 
-def items_done_here(code: str, phase: str, items: str, results: Sequence[str]) -> dict[str, Any]:
+def items_done_here(code: str, phase: str, items: str, results: Sequence[Any]) -> dict[str, Any]:
     """`items_done`; refused where this worker's Lanewright has another digest than `code`, that of the caller."""
     if code_digest() != code:
         return {"refused": "A worker that came later has another Lanewright than this computer. Install this one there."}

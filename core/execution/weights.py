@@ -23,7 +23,8 @@ class EXECUTION:
     trials: int = 2   # of an item whose worker ended; what kills two workers kills a third
     end_time: float = 5.0   # s that a worker may take to end by itself
     last_words: int = 2000   # characters of what a dead worker wrote that are passed on
-    runs_remembered: int = 2   # times as many results as after the first run, beyond which all are forgotten: each correction adds a few
+    runs_kept: int = 2   # times as many results as after the first run of a window, beyond which it begins anew: each correction adds a few
+    unused_time: float = 86400.0   # s that no run used a file of a full work folder, after which it goes: no run at work reads it
     few_items: int = 8   # of a phase, which threads have done before workers have started, which takes these a second
     open_phases: int = 2   # phases kept open in a worker: the current one and the one before
     work_rounds: int = 8   # of work that a worker has in a phase at least, where its items come together, so that all end at about the same time
@@ -31,4 +32,3 @@ class EXECUTION:
     look_time: float = 0.5   # s between two looks whether a phase is still wanted
     watch_time: float = 2.0   # s between two looks at BEAT
     trial_time: float = 30.0   # s that a trial may take on a busy computer
-    longest_note: int = 1 << 24   # bytes; what a run says in a thousand lines is a hundredth of it

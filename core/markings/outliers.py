@@ -114,7 +114,7 @@ class _PaintStores:
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open both."""
-        return Recipe("core.markings.outliers:_PaintStores", dict(points=self.points.recipe(folder), folder=str(folder)))
+        return Recipe("core.markings.outliers:_PaintStores", dict(points=self.points.recipe(folder), folder=str(self.kept.folder)))
 
 
 def kept_of_windows(source: _PaintStores, item: Stretch, settings: OutlierSettings) -> StoreIndex:

@@ -6,7 +6,6 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 import time
@@ -28,12 +27,11 @@ from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.in_step import in_step
+from ..execution.keep import WINDOW, Keep, KeptRun
 from ..execution.phase import digest
-from ..execution.remembered import RememberedResults
-from ..execution.work_folder import code_digest
+from ..execution.tasks import code_digest
 from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
-from ..intensity.tiled_image import TiledImage
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
 from ..markings.lines.curvature import marking_curvature
@@ -55,12 +53,11 @@ from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import CloudHeader, read_headers
-from ..survey.open_survey import SurveySettings, open_survey
+from ..survey.open_survey import SurveySettings, open_survey, states_of
 from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 from ..survey.weights import FRAME
-from .kept_run import WINDOW, KeptRun
 
 
 @dataclass(frozen=True)
@@ -147,11 +144,9 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     try:
         survey, ground = stages.run("survey", "Reading the survey …", _open, files, trajectory, settings.survey, settings.execution,
                                     stages.kept is not None,
-                                    depends=lambda: (code_digest(), _states(paths), trajectory, settings.survey, settings.execution),
-                                    free=lambda opened: opened[0].store.close())
-        if stages.kept is not None and survey.executor.full:
-            stages.kept.drop_from("curbs")
-            survey.executor.clear()
+                                    depends=lambda: (code_digest(), states_of(files), trajectory, settings.survey, settings.execution))
+        if stages.kept is not None:
+            stages.kept.phases, stages.kept.free = survey.executor, survey.store.close
         return _map_of(survey, ground, image_path, settings, stages, corrections)
     except BaseException:
         if stages.kept is not None:
@@ -167,7 +162,7 @@ def _open(files, trajectory, settings, execution, remembers, progress):
     """The survey, whose executor `remembers` results or not, and its ground, which is measured where it is asked for."""
     survey = open_survey(files, trajectory, settings, progress, execution)
     if remembers:
-        survey.executor = RememberedResults(survey.executor)
+        survey.executor = Keep(survey.executor)
     return survey, MeasuredGround(survey)
 
 
@@ -175,10 +170,6 @@ def _may_be_kept(files, execution):
     """Whether a run may be kept: where no work folder does so, no workers of others are held, and as much disk space is left as it takes."""
     taken = sum(file.count for file in files) * (SURVEY_POINT.itemsize + ROAD_POINT.itemsize)
     return not execution.work_folder and not execution.scheduler and shutil.disk_usage(tempfile.gettempdir()).free > 2 * taken
-
-
-def _states(paths):
-    return [(os.path.abspath(path), os.path.getsize(path), os.stat(path).st_mtime_ns) for path in paths]
 
 
 def _map_of(survey, ground, image_path, settings, stages, corrections):
@@ -243,12 +234,11 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     if settings.correct:
         (result.road_points, result.intensity_report), pieces, scatter = stages.run(
             "intensity", "Correcting intensity …", _corrected, result.road_points, frame, settings.image, asphalt, depends=settings.image)
-    passing = executor.passing()
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path, pieces=pieces, depends=(settings.correct, settings.image),
-                       free=TiledImage.close, renewed=True, again=lambda image: image.write(image_path) if image_path else None)
+                       renewed=True, again=lambda image: image.write(image_path) if image_path else None)
     executor.forget()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
@@ -259,10 +249,10 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers,
-                            executor=passing, depends=settings.outliers)
+                            executor=executor, depends=settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
-                                     executor=passing, depends=settings.clusters)
+                                     executor=executor, depends=settings.clusters)
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
@@ -368,12 +358,11 @@ class Stages:
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
     def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, depends: Any = None,
-            free: Callable[[Any], None] = lambda result: None, again: Callable[[Any], None] = lambda result: None, renewed: bool = False,
-            **options: Any) -> Any:
+            again: Callable[[Any], None] = lambda result: None, renewed: bool = False, **options: Any) -> Any:
         """Run a stage: log its title, if any, call the function with its part of the progress, and return its result, or that of the last run.
 
         depends : plain values that the result depends on beside the stages before, or a function that gives them; None for a result that is not kept
-        free, again : what frees the disk space of a result that is kept, and what is done with one that is used again
+        again : what is done with a result that is used again
         renewed : whether the function takes what the last run gave as `before`, where that is another
         """
         share = self.shares[name]
@@ -392,7 +381,7 @@ class Stages:
                 options["before"] = kept.before(name)
             result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
             if kept is not None:
-                kept.keep(name, self._digest, result, partial(free, result), renewed)
+                kept.keep(name, self._digest, result)
         trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share

@@ -69,8 +69,11 @@ class CURBS:
     stretch_length: float = 5.0   # m of road that are read together
     decimation_block_points: int = 256_000   # points that are decided together
     joined_points: int = 60_000   # points below which those of one stretch and the next are yielded together
-    decimation_locks: int = 16   # locks that stretches share while they are decided; the last one is the file's
+    decimation_locks: int = 16   # locks that stretches share while they are decided
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
+    # thin clouds
+    thin_width: float = 2.0   # m across in which points are densest: beside the track
+    thin_density: float = 250.0   # points per m² of ground there, below which more of the road is looked at together: 350 and more of whole surveys
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
@@ -166,11 +169,14 @@ class PROFILE:
     """How steps are found on profiles."""
 
     min_track_distance: float = 0.6   # m from the track: no curb is nearer
-    main_curb_progress: float = 0.6   # share of the work
     # single profiles
     max_rise_width: float = 0.15   # m across within which the whole rise must lie
     min_raised_cells: int = 3   # cells of raised ground behind a rise that a statement about its height needs
     min_raised_height_share: float = 0.65   # share of the least height that these cells must show
+    # wider profiles
+    wider_profiles: tuple[int, ...] = 1, 3, 6   # so many more profiles on either side are looked at together
+    least_behind: int = 4   # points behind a step in those, which tell the slope of the ground
+    least_sharpness: float = 0.75   # share of its height that must lie right at its face
     # averaged profiles
     averaging_length: float = 1.25   # m of road that are averaged
     skew_step: float = 0.125   # m outward per m along between the directions tried: 4 cm at the ends of the average
@@ -286,16 +292,9 @@ class RETURN:
     max_side_street_turn: float = np.radians(35.0)   # of its steps from the direction of such a line
     side_street_widths: tuple[float, float] = (2.5, 16.0)   # m between the two curbs of a side street
     max_opposite_shift: float = 4.0   # m along the side street by which its two curbs may miss each other
-    # what lies behind a curb
-    road_width: float = 16.0   # m down from a step within which the first curb is looked for: two carriageways and a side street are no wider
-    places: int = 5   # of a line from which it is looked for
-    own_curb: float = 0.3   # m within which the line itself, or a double of it, is met
-    # free corners
-    max_crossing_gap: float = 8.0   # m of dropped curb between a corner and the curb that goes on
-    corner_radii: tuple[float, float] = (1.0, 25.0)   # m
-    min_corner_angle: float = np.radians(15.0)   # that the seen part of a corner must turn
-    max_bend_deviation: float = 0.04   # m from its circle
-    pointing_tolerance: float = np.radians(12.0)   # by which a corner and a curb end may miss each other, besides the turn of the gap between them
+    # lines apart: on simulated streets true ones were 0.69 to 1.13 times as high as the road's curbs, edges of ramps and private ground 0.36 to 0.67
+    full_height: float = 0.75   # quantile of the heights of a road's curbs that is theirs where nothing lowers them
+    max_height_step: float = np.log(1.45)   # by which the logarithm of the height of a curb of the same road differs from that of theirs
     # search in plan
     inner_margin: float = 0.5   # m from a main curb from which the ground inside is certainly road, if it lies within
     max_inner_height: float = 0.3   # m above or below the expected road
@@ -557,14 +556,12 @@ class SURFACE:
     step_columns: int = 2   # 0.5 m of other ground end the street; one cell alone is a thing on it
     smoothed_rows: int = 5   # 2.5 m along the road: the far end of the scan frays
     # margins too thin for curbs
-    min_curb_density: float = 80.0   # points per m² of ground: a face of 10 cm then has some ten per metre; surveys thinned below it lose curbs
+    min_curb_density: float = 40.0   # points per m² of ground: a face of 10 cm then has some five per metre; where they are fewer curbs may be lost
     margin: float = 1.0   # m inside the limits of the carriageway in which points are counted
     stretch_rows: int = 20   # rows of ground cells that are looked at together
     seen_share: float = 0.3   # of the cells of a stretch that must hold ground: where something hides it, nothing is said
     shortest_told: float = 20.0   # m of all thin margins together from which they are told
     told_stretches: int = 4   # that are named, the longest first
-    shortest_seen: float = 50.0   # m of margins without a curb that hold points enough, from which a survey shows whether its roads have curbs
-    few_curbs: float = 0.05   # share of the margins that have a curb on roads without curbs: one at a bridge or a bus stop
     # change of the ground
     certain_road: float = 1.2   # m beside the track that belong to the road: the vehicle drove there
     min_change_cells: int = 4   # cells over which a change must last
@@ -619,6 +616,7 @@ class SURFACE:
     farthest_ahead: float = 25.0   # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away, too
     ground_reach: float = 0.7   # m above or below the road under the vehicle, and
     ground_reach_per_metre: float = 0.12   # more per m of offset, within which ground is looked for
+    rows_about_thin: int = 10   # rows of profiles before a window, and behind it, that must be thin as well for its own to be looked at together
     # levels of scanners
     level_width: float = 1.0   # m across the road in which the levels of views differ by one factor
     point_sigma: float = 0.2   # of the logarithm of the intensity of a point about that of its cell: texture, speckle, paint

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from .store.records import Points
 
 CUBE_SIDE = 10_000       # derived: units of 0.1 mm: 1 m
 
-CountedCubes = tuple[np.ndarray, np.ndarray] | None   # keys of the occupied cubes, and how many points they hold; None without points
+CountedCubes = Optional[tuple[np.ndarray, np.ndarray]]   # keys of the occupied cubes, and how many points they hold; None without points
 
 
 @dataclass(frozen=True)

@@ -3,39 +3,38 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.progress import Progress, RememberedMessages
+from ..common.progress import Progress
 from ..execution.choice import ExecutionSettings, cluster_for, executor_for
-from ..execution.phase import THREADS, Executor, digest
-from ..execution.work_folder import KeptResults, WorkFolder, code_digest
+from ..execution.keep import Keep
+from ..execution.phase import THREADS, Executor
 from ..io.crs import FOOT, US_SURVEY_FOOT, as_in_file, check_projected, crs_name, crs_note, parse_crs, unit_note
 from ..lazy import pyproj
 from .adjustment.adjust import adjust_passes, compare_carriageways, warnings_of_levels
 from .adjustment.scanner_fit import lay_scanners
 from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, read_files
-from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance
+from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance, runs_through
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers
 from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .own_track import check_own_track
-from .store.array_file import files_are_whole
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_folder
+from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import FRAME, READING, STORE, VEHICLE
+from .weights import FRAME, READING, STORE, TRAJECTORY, VEHICLE
+
+READING_FOLDER = "read"   # folder of points as they were read, in no order
 
 
 def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -50,13 +49,15 @@ def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajector
 
     Raises RoadExtractionError as `read_survey`, and if the work folder or the cluster cannot be used.
     """
-    work, cluster = execution.work, cluster_for(execution, progress)
+    cluster = cluster_for(execution, progress)
     executor: Executor = cluster or THREADS
     try:
         files = without_copies(read_headers(paths, progress.warn, settings.crs or trajectory.crs), progress.warn)
         executor = executor_for(sum(file.count for file in files), execution, progress, cluster)
-        read = files, trajectory, settings
-        survey = _kept_survey(work, executor, read, progress) if work else _survey_of_run(executor, read, progress)
+        try:
+            survey = _survey_of_run(executor, (files, trajectory, settings), progress)
+        except OSError as error:
+            raise executor.disk_error(error) from error
     except BaseException:
         executor.close()
         raise
@@ -67,91 +68,36 @@ def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajector
 
 
 def _survey_of_run(executor, read, progress):
-    """The survey, whose points lie where the workers of an executor see them; in memory for threads."""
-    reading = _readers(executor, read[0], progress)
-    if reading.folder is None:
-        return read_survey(*read, progress)
-    shared = _SharedReading(reading, executor, reading.folder / "points", reading.folder / SURVEY_FOLDER)
-    try:
-        survey = read_survey(*read, progress, shared)
-    except OSError as error:
-        raise executor.disk_error(error) from error
-    shutil.rmtree(shared.points, ignore_errors=True)
+    """The survey, whose points lie where the workers of an executor see them, or in memory; from a work folder, where they lie there."""
+    def read_here(progress):
+        reading = executor
+        if not executor.sees([Path(file.path).absolute() for file in read[0]]):
+            progress.info("The workers do not see the point clouds where this computer does, which therefore reads them alone.")
+            reading = executor.in_threads()
+        return read_survey(*read, progress, reading, executor)
+
+    if not isinstance(executor, Keep):
+        return read_here(progress)
+    survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
+    survey.files = read[0]
     return survey
 
 
-def _readers(executor, files, progress):
-    """Who reads the files: the workers, if they see them, else threads."""
-    if executor.sees([Path(file.path).absolute() for file in files]):
-        return executor
-    progress.info("The workers do not see the point clouds where this computer does, which therefore reads them alone.")
-    return THREADS
-
-
-def _kept_survey(work, executor, read, progress):
-    """The survey of a work folder; it is read into it where it is not there."""
-    files, trajectory, settings = read
-    states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
-    name = f"survey-{digest((code_digest(), states, trajectory, settings))}"
-    try:
-        if earlier := _found_survey(work, name, files, progress):
-            return earlier
-        listener = RememberedMessages(progress)
-        parts = WorkFolder(str(work.path / f"{name}.parts"))
-        if not files_are_whole(parts.path / "points"):
-            parts.discard()
-            parts = WorkFolder(str(parts.path))
-        reading = KeptResults(_readers(executor.executor, files, progress), parts)
-        shared = _SharedReading(reading, executor.executor, parts.path / "points", work.begin(name))
-        try:
-            survey = read_survey(*read, listener, shared)
-        except RoadExtractionError:
-            # another run, which was quicker, has removed the parts
-            if earlier := _found_survey(work, name, files, progress):
-                return earlier
-            raise
-        work.finish(name, survey.folder, listener.messages)
-        parts.discard()
-        return survey
-    except OSError as error:
-        raise work.error(error) from error
-
-
-def _found_survey(work, name, files, progress):
-    """The survey that an earlier run put into a work folder; None where there is none."""
-    finished = work.finished(name)
-    if finished is None:
-        return None
-    folder, messages = finished
-    survey = survey_in_folder(str(folder))
-    survey.files = files
-    progress.info("The points were read by an earlier run and are taken from the work folder. It said:")
-    for kind, text in messages:
-        (progress.warn if kind == "warn" else progress.info)(text)
-    progress.report(1.0)
-    return survey
+def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
+    """Path, size and time of change of each file."""
+    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
 
 
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.
 
 
-@dataclass(frozen=True)
-class _SharedReading:
-    """A survey that is read by workers, or kept: who reads the files and who puts the points in order, and the folders for either."""
-
-    reading: Executor
-    ordering: Executor
-    points: Path
-    ordered: Path
-
-
 def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
-                progress: Progress = Progress(), shared: _SharedReading | None = None) -> Survey:
+                progress: Progress = Progress(), reading: Executor = THREADS, ordering: Executor = THREADS) -> Survey:
     """Read point clouds once and project every point into the road frame.
 
     files : headers of LAS, LAZ or COPC files in any order
     trajectory : Trajectory in any CRS and time system
-    shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
+    reading, ordering : who reads the files, and who puts the points in order; the points lie in the folder of who reads
 
     Raises RoadExtractionError if a file cannot be read, the CRS is geographic or not in metres, or the trajectory does not overlap the cloud in space
     or time.
@@ -168,13 +114,14 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from)
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
-    executor, folder = (THREADS, None) if shared is None else (shared.reading, shared.points)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length or section_length(files, frame), folder)
+    folder = reading.folder
+    section = settings.section_length or section_length(files, frame)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), section, folder and folder / READING_FOLDER)
     choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
-    parts_at = read_at if shared is None else READING.parts_progress * read_at
-    read = read_files(files, frame, store, choice, settings.block, executor, progress.part(0.0, parts_at))
+    parts_at = read_at if folder is None else READING.parts_progress * read_at
+    read = read_files(files, frame, store, choice, settings.block, reading, progress.part(0.0, parts_at))
     _say_left_out(files, frame, read, settings, progress)
     height = float(np.mean(list(read.heights.values())))
     feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
@@ -183,18 +130,15 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
-    if shared is not None:
-        shared.ordered.mkdir(exist_ok=True)
-        survey.executor = shared.ordering
-        survey.put_in_order(shared.ordered, shared.ordering, progress.part(parts_at, read_at))
+    if folder is not None:
+        survey.executor = ordering
+        survey.put_in_order(folder / SURVEY_FOLDER, ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory; what passes differ by is part of the same error
     if across := max(settings.trajectory_sigma or fitted.trajectory.sigma_across, float(np.hypot(fitted.sigma, rounding)), left):
         known = survey.frame.pass_sigma
         survey.frame.pass_sigma = {road: known.get(road, SigmaAlong.everywhere(0.0)).at_least(across) for road in range(len(frame.roads))}
-    if shared is not None:
-        survey.keep(shared.ordered)
     return survey
 
 
@@ -401,33 +345,31 @@ def _check_extent(files, frame, crs, trajectory_crs, progress):
     ways = [np.c_[p.x, p.y][decimate_by_distance(p.x, p.y, FRAME.track_step)] for p in frame.passes]
     x, y = (np.concatenate(ways) + frame.origin[:2]).T
     reach = FRAME.corridor
-    away = [file for file in filled if not _runs_through(file.minimum, file.maximum, x, y, reach)]
+    away = [file for file in filled if not runs_through(file.minimum, file.maximum, x, y, reach)]
     if len(away) == len(filled):
         raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} "
                                   f"to {y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
                                   f"{_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
     for file in away:
         ends = np.array(file.minimum), np.array(file.maximum)
-        if _runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
+        near = runs_through(*ends, x, y, TRAJECTORY.longest_step)
+        if not near or runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
             raise RoadExtractionError(f"The coordinates of {file.path} are of another kind than those of the other point clouds, through which the "
                                       f"trajectory runs. {_what_to_try(*ends, x, y, crs, trajectory_crs, reach)}")
     if away:
         progress.info(f"{len(away)} of {len(filled)} files lie beside the trajectory and give no points, such as {away[0].path}.")
 
 
-def _runs_through(low, high, x, y, reach):
-    """Does a drive come within `reach` m of a box?"""
-    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
-
-
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """The advice of the error message, where cloud and trajectory do not overlap."""
-    if _runs_through(low, high, y, x, reach):
+    if runs_through(low, high, y, x, reach):
         return "In one of them x and y are exchanged: export the cloud with the easting as x, or name the trajectory's columns the other way round."
     if advice := _advice_on_units(low, high, x, y, crs, reach):
         return advice
-    if crs and _runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
+    if crs and runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
         return "The trajectory's longitude and latitude are exchanged: name its columns the other way round, and run again."
+    if not runs_through(low, high, x, y, TRAJECTORY.longest_step):
+        return f"They lie more than {TRAJECTORY.longest_step / 1000:.0f} km apart, as in two zones of a projection: reproject them to one CRS."
     if trajectory_crs:
         return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
@@ -436,11 +378,11 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
 
 def _advice_on_units(low, high, x, y, crs, reach):
     """The advice where cloud or trajectory seem to be in feet, in degrees, or counted from the centre of the earth; "" where they do not."""
-    if any(_runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+    if any(runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         if not as_in_file(crs)[1].metric:
             return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
         return "The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in, or convert the cloud to metres."
-    if any(_runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
+    if any(runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
         return "The trajectory's coordinates are the cloud's in feet: give it its CRS, as Import trajectory does, or convert it to metres."
     if np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0:
         return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."

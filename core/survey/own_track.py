@@ -77,7 +77,7 @@ def _clock(seen, survey):
 
 
 def _rails(seen, survey):
-    """Two narrow ridges all along, between which the vehicle drove; m that they lie apart."""
+    """Two narrow ridges all along, between which the vehicle drove; m, one sigma of what is taken for the edge of a road there."""
     bins, half = round(2 * READING.clock_track_half_width / READING.rail_cell), READING.clock_track_half_width
     for aside, height in _by_number(seen.number, seen.aside, seen.height).values():
         cell = np.minimum(((aside + half) / READING.rail_cell).astype(int), bins - 1)
@@ -87,7 +87,7 @@ def _rails(seen, survey):
             gauge = (then + last - first - end) / 2 * READING.rail_cell
             if max(end - first, last - then) * READING.rail_cell < READING.widest_rail and READING.gauges[0] < gauge < READING.gauges[1]:
                 return (f"The vehicle drove on rails, {gauge:.2f} m apart: this is a railway and no road. Edges, markings and lanes that are found "
-                        "here are not those of a road.", float(gauge))
+                        "here are not those of a road.", READING.rail_verge / 12.0**0.5)
     return "", 0.0
 
 

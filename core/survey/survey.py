@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from .store.records import COORDINATE_SCALE, Points, road_of
 from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import FRAME, LAS, READING
 
-SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.plain"   # of a survey that other processes open
+SURVEY_FOLDER = "survey"   # folder of the points of a survey that other processes open, beside its file
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 
 
@@ -69,7 +70,7 @@ class Survey:
     moves: PassCorrections | None = None   # PassCorrections by which points and tracks were moved, None where they are as measured
     above_road: float = READING.kept_above_road   # metres above the road up to which points are returned
     executor: Executor = THREADS   # Executor of the phases that read from this survey
-    folder: Path | None = None   # where the points lie for other processes, None where they are this one's alone
+    file: Path | None = None   # by which other processes open it, None where the points are this one's alone
     splitter: ScannerSplitter | None = None   # distinguishes scanners that no field distinguishes; None where there is no need
 
     def __post_init__(self) -> None:
@@ -77,17 +78,17 @@ class Survey:
 
     def recipe(self, folder: Path) -> Recipe:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
-        if self.folder is None:
-            points_folder = folder / SURVEY_FOLDER
-            points_folder.mkdir()
-            self.put_in_order(points_folder)
-            self.keep(points_folder)
-        return Recipe("core.survey.survey:survey_in_folder", dict(folder=str(self.folder)))
+        if self.file is None:
+            if self.store.folder is None:
+                self.put_in_order(folder / SURVEY_FOLDER)
+            file = folder / f"survey-{uuid4().hex}.plain"
+            write_plain(file, (self.contents(), []))
+            self.file = file
+        return Recipe("core.survey.survey:survey_in_file", dict(file=str(self.file)))
 
-    def keep(self, folder: Path) -> None:
-        """Write what other processes need to open the survey whose points were put in order in a folder."""
-        write_plain(folder / SURVEY_FILE, dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED}))
-        self.folder = folder
+    def contents(self) -> dict[str, Any]:
+        """What other processes need to open the survey, whose points were put in order in a folder; plain values."""
+        return dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED})
 
     def put_in_order(self, folder: Path | None, executor: Executor = THREADS, progress: Progress = Progress(), moves: Any = None) -> None:
         """Put the points in order, in a folder that the executor's workers see, as they see that of the store; `moves` : as of _UnorderedPoints."""
@@ -97,7 +98,12 @@ class Survey:
         roads = [None, *(road for road, *_ in items), None]
         items = [(road, first - source.beyond * (before != road), end + source.beyond * (after != road))
                  for (road, first, end), before, after in zip(items, roads, roads[2:])]
+        before = self.store.paths()
+        if folder is not None:
+            folder.mkdir(exist_ok=True)
         self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), folder)
+        close_files()
+        executor.discard(before)
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -126,10 +132,11 @@ class Survey:
         return self.frame.track_height(road, s, self.sensor_height)
 
 
-def survey_in_folder(folder: str) -> Survey:
-    """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
-    fields = read_plain(Path(folder) / SURVEY_FILE)
-    return Survey(files=[], store=opened_store(folder, **fields.pop("store")), folder=Path(folder), **fields)
+def survey_in_file(file: str) -> Survey:
+    """The survey of `Survey.contents` in a file, without the files that it was read from."""
+    path = Path(file)
+    fields, _ = read_plain(path)
+    return Survey(files=[], store=opened_store(path.parent / SURVEY_FOLDER, **fields.pop("store")), file=path, **fields)
 
 
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.

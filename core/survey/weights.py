@@ -81,6 +81,9 @@ class REGISTER:
     max_runner_up: float = 0.7   # of that ratio, for the second best offset
     parabola_cells: int = 2   # cells either side of the best, for the parabola
     peak_cells: int = 2   # cells beside the best that belong to its peak
+    rebuilt_heights: tuple[float, float] = 0.05, 0.20   # m by which ground lies higher where a street was rebuilt, as curbs do and cars do not
+    rebuilt_share: float = 0.75   # of a window's length, along which it does: two cars in a row are shorter
+    least_rebuilt: float = 0.10   # m across of such ground: less is the curb itself, blurred
     sigma_reach: float = 25.0   # m of road either way over which passes are compared: less would be the noise of single offsets
 
 
@@ -105,9 +108,6 @@ class ADJUST:
     share_along: float = 0.8   # of the shorter of two roads, that they run along each other
     even_rise: float = 0.15   # m by which one may vary in height above the other: navigation drifts by less, ramps climb by more
     share_between: tuple[float, float] = 0.25, 0.75   # of the way from one track to the other: what both drives see well
-    height_cell: float = 0.25   # m, of the cells that heights are compared in
-    flat_cell_range: float = 0.03   # m between the highest and the lowest point of a flat cell
-    min_flat_cells: int = 40   # flat cells that both drives see, for a difference
     max_height_apart: float = 0.02   # m in height that two drives may differ by without a warning
     least_told_move: float = 0.005   # m; less is not named in the warning
 
@@ -255,6 +255,7 @@ class READING:
     least_rail_height: float = 0.08   # m above what lies between: rails stand 0.13 to 0.17 m high on their sleepers
     widest_rail: float = 0.21   # m, with sleepers' plates: curbs and kerbed tracks are wider
     gauges: tuple[float, float] = 0.95, 1.80   # m from rail to rail
+    rail_verge: float = 2.0   # m from the ends of sleepers, 1.3 m from the middle, to the edge of the formation, 3.3 m: anything there may be drawn
     max_correction: float = 10.0   # m: no pass is moved farther when passes are adjusted
 
 
@@ -277,8 +278,6 @@ class TRAJECTORY:
     least_named: int = 2   # roles that the line of names must hold
     checked_rows: int = 200   # rows by which it is told whether a column takes several fields
     head_bytes: int = 20_000   # bytes in which it shows that a file is a log of a receiver
-    chunk: int = 1 << 16   # bytes handed to the parser at once
-    most_text: int = 200   # characters of a coordinate or time that are kept
     texts_looked_at: int = 50   # texts of a column by which it is told what they are
     most_of_texts: float = 0.9   # share of these that must agree
     shortest_step: float = 5e-4   # s from row to row; no trajectory has 2000 positions a second, and a vehicle drives a centimetre in it
@@ -514,6 +513,7 @@ class VEHICLE:
     usual_ahead: float = 3.0   # m ahead of a trajectory on the same vehicle that scanners ride, one sigma
     turns_window: float = 0.05   # s; every mirror turns a few times, and a vehicle on the road hardly sways
     min_windows: int = 8   # good ones that the place of a scanner needs
+    max_one_way: float = 0.95   # length of the mean unit vector to the points of a window: they lie within 60 degrees
     attitude_noise: float = 0.01   # radians that roll, pitch and heading may be off, or differ from those of the way driven
     max_upright: float = 0.8   # of the plane's normal; what lies flatter is the ground
     one_move: float = 0.20   # m that one move may leave, as navigation drifts; more is the error of a drive by itself

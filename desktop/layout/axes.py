@@ -24,6 +24,7 @@ STRETCH = (0.8, 1.25)  # length of a line per length of its stations: others run
 USUAL = 75.0           # %: the half width of a road is that of so many of its stations; others are wider, as at a junction
 ON_AXIS = 1.0          # m within which a line to one side alone tells the height on the axis
 BESIDE = 25.0          # m from the axis to lines that tell the height of the ground
+TIGHTEST = 8.0         # m, radius: no road turns more tightly, but lines around the corner of a junction do
 
 
 @dataclass(frozen=True)
@@ -101,10 +102,22 @@ def _axes_of_road(road, lines):
         if len(part) * STEP < SHORTEST_LINE:
             continue
         part = np.arange(part[0], part[-1] + 1)
-        course = np.stack([_smooth(np.interp(part, known, axis[known, column]), SMOOTHED) for column in (0, 1)], axis=-1)
+        course = _course(part, known, axis)
         inside = (rows >= part[0]) & (rows <= part[-1])
         heights, half_width = _across(rows[inside] - part[0], places[inside], course)
         yield Axis(road, (first + part) * STEP, np.c_[course, heights], half_width)
+
+
+def _course(part, known, axis):
+    """(S, 2) the axis smoothed; places beside which it would fold are left out."""
+    while True:
+        course = np.stack([_smooth(np.interp(part, known, axis[known, column]), SMOOTHED) for column in (0, 1)], axis=-1)
+        headings = np.unwrap(np.arctan2(*np.diff(course, axis=0).T[::-1]))
+        folded = part[1:-1][np.abs(np.diff(headings)) > STEP / TIGHTEST]
+        kept = known[(np.abs(known[:, None] - folded) > SMOOTHED).all(axis=1) | np.isin(known, part[[0, -1]])]
+        if len(kept) == len(known):
+            return course
+        known = kept
 
 
 def _samples(line, first):
@@ -196,8 +209,8 @@ class MapLine:
     row: dict[str, Any]
 
     def number(self, name: str) -> float:
-        """A field in metres, of a layer in feet too; NaN where it has none."""
-        for column, unit in ((f"{name}_m", 1.0), (f"{name}_ft", 0.3048)):
+        """A field of that name, or a length in metres, of a layer in feet too; NaN where it has none."""
+        for column, unit in ((f"{name}_m", 1.0), (f"{name}_ft", 0.3048), (name, 1.0)):
             value = self.row.get(column)
             if isinstance(value, (int, float)):
                 return value * unit
@@ -283,6 +296,8 @@ MOST_HEIGHT = 0.9     # of a sheet's height that the road may take
 SHORTEST_REST = 1.0   # m of an axis that may lie on no sheet
 SHORTENED = 0.8       # by which the stretch of a sheet is shortened until it fits
 LEAST_REACH = 0.15    # of a sheet's width that it shows at least, however tight the bend
+CUTS = (1.0, 0.94, 1.06, 0.88, 1.12, 0.82, 1.18, 0.76, 1.24, 0.7)   # of a stretch: the first that ends at no junction
+CORNER = 5.0          # m from the edges of a road to where those of a junction begin
 
 
 @dataclass(frozen=True)
@@ -350,15 +365,23 @@ def _parts(geometry):
 def _walk(line, axis, axes, width, height, number):
     """Sheets along one line of an axis; each reaches as far as the road stays on it, and all about as far."""
     sheets, begin = [], 0.0
+
+    def shown(reach):
+        """(where it ends, the sheet, whether the road fits on it) of a stretch."""
+        end = min(begin + reach, line.length)
+        places = np.array([line.interpolate(at).coords[0][:2] for at in np.linspace(begin, end, 41)])
+        return end, *_sheet(places, axis, axes, width, height, number + len(sheets))
+
     while begin < line.length - 1e-6:
         reach = (line.length - begin) / math.ceil((line.length - begin) / (width * (1 - OVERLAP)) - 1e-9)
-        while True:
-            end = min(begin + reach, line.length)
-            places = np.array([line.interpolate(at).coords[0][:2] for at in np.linspace(begin, end, 41)])
-            sheet, fits = _sheet(places, axis, axes, width, height, number + len(sheets))
-            if fits or reach < LEAST_REACH * width:
-                break
+        while not (stretch := shown(reach))[2] and reach >= LEAST_REACH * width:
             reach *= SHORTENED
+        if stretch[0] < line.length:   # at no junction, where that takes no further sheet
+            most = round((line.length - begin) / reach - 1) * width * (1 - OVERLAP)
+            cuts = (shown(share * reach) for share in CUTS)
+            stretch = next((cut for cut in cuts if cut[2] and line.length - cut[0] <= most
+                            and not _in_junction(line.interpolate(cut[0]), axis, axes)), stretch)
+        end, sheet, _ = stretch
         if sheets:
             here = _heading(line, begin)
             sheets[-1].matches.append(Match(*here, sheet.number))
@@ -366,6 +389,12 @@ def _walk(line, axis, axes, width, height, number):
         sheets.append(sheet)
         begin = end
     return sheets
+
+
+def _in_junction(place, axis, axes):
+    """Whether another road meets the axis there."""
+    return any(place.distance(LineString(other.places[:, :2])) < math.hypot(axis.half_width + CORNER, other.half_width + CORNER)
+               for other in axes if other is not axis)
 
 
 def _sheet(places, axis, axes, width, height, number):

@@ -12,7 +12,6 @@ import shapely
 from qgis.core import (
     Qgis,
     QgsExpressionContextUtils,
-    QgsFillSymbol,
     QgsLayerTreeModelLegendNode,
     QgsLayoutItemLegend,
     QgsLayoutPoint,
@@ -34,7 +33,7 @@ from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF
 from scipy.spatial import cKDTree
 
 from ...core.common.arrays import round_step
-from ...processing_provider.texts import tr
+from ...processing_provider.texts import numbers, tr
 from .axes import Axis, MapLine
 
 LETTER = 0.353   # mm of a point
@@ -68,6 +67,7 @@ class Drawing:
     def text(self, x: float, y: float, text: str, size: float = 7.0, anchor: str = "middle", turned: float = 0.0, colour: str = DARK,
              boxed: bool = False, yields: bool = False) -> bool:
         """A text whose middle line passes through a place, `turned` clockwise by degrees; False where it `yields` to texts already there."""
+        text = numbers(text)
         wide, high = text_width(text, size), size * LETTER
         shift = {"start": wide / 2, "middle": 0.0, "end": -wide / 2}[anchor]
         angle = math.radians(turned)
@@ -227,8 +227,7 @@ def _on_asphalt(symbol):
         return shown
     if symbol.type() == Qgis.SymbolType.Line:
         shown.insertSymbolLayer(0, QgsSimpleLineSymbolLayer(ASPHALT, GROUND))
-        return shown
-    return QgsFillSymbol.createSimple({"color": "white", "outline_color": ASPHALT.name(), "outline_width": "1"})
+    return shown
 
 
 # Longitudinal profiles along the axes and cross-sections of the road, drawn to scale on pages.
@@ -255,7 +254,7 @@ COLOURS = {"ROAD_EDGES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES":
 
 
 def profile_pages(axes: list[Axis], width: float, height: float, scale: int, sheets: int) -> list[tuple[Drawing, str]]:
-    """Pages of so many mm with strips of the profile of what so many sheets of a scale show, and the words of each page's scale."""
+    """Drawings on pages of so many mm, strips of the profile of what so many sheets of a scale show, and the words of each one's scale."""
     axes = [known for axis in axes if (known := axis.with_heights()) is not None]
     if not axes:
         return []
@@ -270,7 +269,7 @@ def profile_pages(axes: list[Axis], width: float, height: float, scale: int, she
     strip = min(height / min(count, len(stretches)), 1.3 * strip)
     pages = []
     for start in range(0, len(stretches), count):
-        drawing = Drawing(width, height)
+        drawing = Drawing(width, strip * len(stretches[start:start + count]))
         for row, stretch in enumerate(stretches[start:start + count]):
             _draw_profile(drawing, *stretch, row * strip, strip, along, times, len(axes) > 1)
         pages.append((drawing, tr("lengths 1 : {lengths}, heights 1 : {heights}").format(lengths=along, heights=f"{along / times:.0f}")))
@@ -345,7 +344,7 @@ def _draw_profile(drawing, axis, first, last, top, strip, scale, times, named):
 
 def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.ndarray], interval: float, width: float,
                   height: float) -> list[tuple[Drawing, str]]:
-    """Pages of so many mm with a section every so many metres of every axis where there is a line or a point, and the words of each page's scale.
+    """Drawings on pages of so many mm, a section every so many metres of every axis where there is a line or a point; and the words of their scale.
 
     Where there is a layer of cross-sections, its own are shown: those that are so far apart, and those in which a limit is not kept.
     """
@@ -373,9 +372,11 @@ def section_pages(axes: list[Axis], lines: list[MapLine], ground: Iterable[np.nd
     rows = max(int(height // tall), 1)
     tall, pages = height / rows, []
     for start in range(0, len(seen), rows * columns):
-        drawing = Drawing(width, height)
-        for number, k in enumerate(seen[start:start + rows * columns]):
-            column, row = divmod(number, rows)
+        shown = seen[start:start + rows * columns]
+        below = math.ceil(len(shown) / columns)
+        drawing = Drawing(width, below * tall)
+        for number, k in enumerate(shown):
+            column, row = divmod(number, below)
             axis, station, _, reasons, _ = places[k]
             name = f"{tr('Road {number}').format(number=axis.road)}, {station_text(station)}" if len(axes) > 1 else station_text(station)
             _draw_section(drawing, column * cell, row * tall, cell, tall, head, name, crossed[k], surfaces[k], scale, up, reach)

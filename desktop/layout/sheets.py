@@ -30,7 +30,7 @@ from qgis.core import (
     QgsRectangle,
     QgsUnitTypes,
 )
-from qgis.PyQt.QtCore import QMarginsF, QRectF, Qt
+from qgis.PyQt.QtCore import QLocale, QMarginsF, QRectF, Qt
 from qgis.PyQt.QtGui import QColor, QPageLayout, QPageSize, QPainter, QPdfWriter
 
 from ...algorithms.algorithm import MAP_LAYERS
@@ -81,6 +81,7 @@ NOTES = 9.0           # mm for the notes below profiles and sections
 ABOVE = 18.0          # mm above the title block for scale and arrow, where the legend takes their place
 GRID = 60.0           # mm between lines of the grid at least
 TICKS, LABELS = 5.0, 25.0   # mm between ticks and labels of stations at least
+MATCH = 50.0          # mm beside the road to which a match line reaches, with its text
 AXIS = "#b00020"
 ROWS = (0.28, 0.18, 0.18, 0.18, 0.18)   # of the title block's height
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
@@ -186,26 +187,32 @@ class _Pages:
             self._add_overview()
         for sheet in self.sheets:
             self._add_sheet(sheet)
-        heights = tr("Heights in m: height system as stated")
+        heights = (tr("Heights in m: height system as stated"), "")
         size, interval = (self.frame.map.width(), self.frame.map.height() - NOTES), self.choice.section_interval
         self._report()
         profiles = profile_pages(self.axes, *size, self.scale, len(self.sheets)) if self.choice.profile else []
         self._report()
         sections = section_pages(self.axes, self.lines, ground, interval, *size) if interval else []
-        drawings = [(tr("Longitudinal profile"), profiles, [(tr("Ground along the axis"), AXIS), (heights, "")]),
-                    (tr("Cross-sections"), sections,
-                     [(tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
-                      (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK),
-                      (tr("Offsets in m from the axis, left positive"), ""), (heights, "")])]
-        for contents, pages, notes in drawings:
-            for number, (drawing, scale) in enumerate(pages, 1):
-                page = self._new_page()
-                paper = self._paper(self.frame)
-                self._add_title_block(paper, page, self.frame, contents, f"{number} / {len(pages)}", scale)
-                self._add_key_map(paper, page, None)
-                self._add_notes(paper, notes)
-                self._add_drawing(paper, page)
-                self._add_drawing(drawing, page, self.frame.map.x(), self.frame.map.y())
+        drawn = [(profile, tr("Longitudinal profile"), [(tr("Ground along the axis"), AXIS), heights]) for profile in profiles]
+        drawn += [(section, tr("Cross-sections"), [
+            (tr("Road edge, height of its curb"), COLOURS["ROAD_EDGES"]), (tr("Marking line"), COLOURS["MARKING_LINES"]),
+            (tr("Driving line"), COLOURS["DRIVING_LINES"]), (tr("Ground"), DARK), (tr("Offsets in m from the axis, left positive"), ""), heights])
+            for section in sections]
+        pages: list = []
+        for one in drawn:   # below the one before, where there is room
+            if not pages or sum(part[0][0].height for part in (*pages[-1], one)) > size[1] + 1e-6:
+                pages.append([])
+            pages[-1].append(one)
+        for number, parts in enumerate(pages, 1):
+            page, paper, y = self._new_page(), self._paper(self.frame), self.frame.map.y()
+            self._add_title_block(paper, page, self.frame, ", ".join(contents for _, contents, _ in parts), f"{number} / {len(pages)}",
+                                  "; ".join(scale for (_, scale), _, _ in parts))
+            self._add_key_map(paper, page, None)
+            self._add_notes(paper, dict.fromkeys(note for _, _, notes in parts for note in notes))
+            self._add_drawing(paper, page)
+            for (drawing, _), _, _ in parts:
+                self._add_drawing(drawing, page, self.frame.map.x(), y)
+                y += drawing.height
 
     def _report(self):
         """How far the work is; between two reports QGIS lets the window live."""
@@ -273,7 +280,7 @@ class _Pages:
         if self.legend_on_sheets:
             add_legend(self.layout, self.classes, self._legend_room(frame), page)
         self._add_scale_and_north(chart, page, frame, self.scale, frame.band)
-        self._explain(paper)
+        self._explain(paper, sheet)
         self._add_drawing(over, page, frame.map.x(), frame.map.y())
         self._add_drawing(paper, page)
 
@@ -371,13 +378,18 @@ class _Pages:
         width, height = bar.rect().width(), bar.rect().height()
         self._place(bar, page, *((x + 21 - width / 2, top + band - height - 3) if aside else (x + 45, top + 4)))
 
-    def _explain(self, paper):
+    def _explain(self, paper, sheet):
         """What the red line and the figures on the map say, between arrow and scale."""
         x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 8
         paper.line([(x, y), (x + 8, y)], AXIS, 0.25, "5 1 0.6 1")
-        figures = (("", tr("Axis with stations"), math.inf), ("R 85", tr("Radius (m)"), 1500), ("3.40", tr("Width of the lane (m)"), 750),
-                   ("12 cm", tr("Height of the curb"), 400))   # each with the smallest scale at which the styles write it
-        rows = [(figure, text) for figure, text, least in figures if self.scale <= least]
+        courses = [(line, shapely.LineString(line.places[:, :2])) for line in self.lines]
+        shown = [(line, course.length) for line, course in courses if sheet.outline().intersects(course)]
+        rows = [("", tr("Axis with stations"))] + [
+            (figure, text) for figure, text, least, output, name, lowest, shortest in (
+                ("R 85", tr("Radius (m)"), 1500, "DRIVING_LINES", "radius", 5.0, 0.0), ("3.40", tr("Width of the lane (m)"), 750, "DRIVING_LINES",
+                 "width", 0.0, 8.0), ("50 km/h", tr("Design speed"), 1500, "DRIVING_LINES", "design_kmh", 0.0, 0.0),
+                ("12 cm", tr("Height of the curb"), 400, "ROAD_EDGES", "height", 0.01, 6.0))   # where and down to which scale the styles write it
+            if self.scale <= least and any(line.output == output and line.number(name) > lowest and length > shortest for line, length in shown)]
         for row, (figure, text) in enumerate(rows):
             paper.text(x, y + 3.2 * row, figure, 5.5, "start")
             paper.text(x + 10, y + 3.2 * row, text, 5.5, "start")
@@ -456,7 +468,9 @@ class _Pages:
         per_mm = self.scale / 1000
         for match in sheet.matches:
             across = np.array([-math.sin(match.heading), math.cos(match.heading)])
-            ends = sheet.on_page(np.array([match.x, match.y]) + np.outer(self._reaches(match, across, sheet), across)) / per_mm
+            axis = min(self.axes, key=lambda one: np.hypot(*(one.places[:, :2] - (match.x, match.y)).T).min())
+            reach = axis.half_width + MATCH * per_mm
+            ends = sheet.on_page(np.array([match.x, match.y]) + np.outer([-reach, reach], across)) / per_mm
             line = shapely.clip_by_rect(shapely.LineString(ends), 0, 0, drawing.width, drawing.height)
             if line.is_empty:
                 continue
@@ -474,15 +488,6 @@ class _Pages:
             for end, ahead in ((top, 1), (bottom, -1)):
                 place = end + ahead * way / max(np.hypot(*way), 1e-9) * room + normal * 2.2
                 drawing.text(*place, text, 8.0, turned=turned, boxed=True, yields=True)
-
-    def _reaches(self, match, across, sheet):
-        """m to the right (negative) and left that a match line reaches: over the sheet, but not to another leg of its own road."""
-        most, place = sheet.width + sheet.height, np.array([match.x, match.y])
-        axis = min(self.axes, key=lambda one: np.hypot(*(one.places[:, :2] - place).T).min())
-        met = shapely.intersection(shapely.LineString(axis.places[:, :2]), shapely.LineString(place + np.outer([-most, most], across)))
-        offsets = (shapely.get_coordinates(met) - place) @ across
-        gap = 2 * axis.half_width
-        return [max([-most, *(offsets[offsets < -gap] + gap)]), min([most, *(offsets[offsets > gap] - gap)])]
 
     def _draw_stations(self, drawing, sheet):
         """The axis with a tick every 10 m (more at small scales) and stations beside the road."""
@@ -567,13 +572,15 @@ DPI, DPI_OF_LARGE = 300, {"A1": 200, "A0": 150}   # of images on a sheet: an A0 
 
 def print_sheets(call, settings: SheetSettings, progress: Progress) -> dict[str, float]:
     """Draw the sheets of a QgisCall into its OUTPUT; returns the numbers of the algorithm."""
-    spoken, chosen = language(), call.value("LANGUAGE")
+    spoken, chosen, signs = language(), call.value("LANGUAGE"), QLocale()
     try:
         if chosen != "automatic":
             speak(chosen)
+            QLocale.setDefault(QLocale(chosen))   # of the numbers in labels
         return _print(call, settings, progress)
     finally:
         speak(spoken)
+        QLocale.setDefault(signs)
 
 
 def _print(call, settings, progress):

@@ -43,36 +43,28 @@ class Doubt:
 
 def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     """The doubtful places, of some kinds of DoubtfulPiece or of all, along the roads of a map; doubts that lie together are one."""
-    pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output)]
-    # a lane is looked at once: its area only where its driving line says nothing
-    lanes = [(piece.road, piece.station) for piece in pieces if piece.kind == "lane"]
-    if road_map.layer("DRIVING_LINES") is None or not lanes:
-        pieces += _doubtful_rows(road_map, "LANES")
     rows = {output: _rows(road_map.layer(output)) for output in (*ALONG, "ROAD_SURFACE", "LANES")}
+    pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output, rows)]
+    # a lane is looked at once: its area only where its driving line says nothing
+    if road_map.layer("DRIVING_LINES") is None or not any(piece.kind == "lane" for piece in pieces):
+        pieces += _doubtful_rows(road_map, "LANES", rows)
     for extra in (_missing_edges(rows), _grown_surface(rows), _lane_ends(rows), _warned_places(rows, road_map.provenance.warnings)):
         pieces += extra
     kept_kinds = set(kinds)
-    crs = road_map.vectors[0].crs()
     return _gathered(sorted((piece for piece in pieces if not kept_kinds or piece.kind in kept_kinds),
-                            key=lambda piece: (piece.road, piece.station)), crs)
+                            key=lambda piece: (piece.road, piece.station)), road_map.vectors[0].crs())
 
 
-def _doubtful_rows(road_map, output):
-    layer = road_map.layer(output)
-    names = [] if layer is None else [field.name() for field in layer.fields()]
-    title, result = None if layer is None else titles_of(layer), []
-    for feature in layer.getFeatures() if {"station_m", "road"} <= set(names) else ():
-        row = dict(zip(names, feature.attributes()))
+def _doubtful_rows(road_map, output, rows):
+    title, target = titles_of(road_map.layer(output)) if rows[output] else None, TARGETS[output]
+    for row, feature, road, _, _ in rows[output]:
         why, share = reason(row)
-        if why and not feature.geometry().isEmpty():
-            target = TARGETS[output]
+        if why:
             reading = str(row.get("other") or "")
             if reading:
                 why += tr("; almost as likely: {reading}").format(reading=second_reading(reading))
-            result.append(DoubtfulPiece(f"{title(feature)}: {why}", target, course_of(feature.geometry()),
-                                        int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0,
-                                        (_number(row.get("length_m")) or 0.0) * share, target, _number(row.get("offset_m")), reading))
-    return result
+            yield DoubtfulPiece(f"{title(feature)}: {why}", target, course_of(feature.geometry()), road, _number(row["station_m"]),
+                                (_number(row.get("length_m")) or 0.0) * share, target, _number(row.get("offset_m")), reading)
 
 
 def reason(row: dict) -> tuple[str, float]:
@@ -179,8 +171,9 @@ def _missing_edges(rows):
 
 def _grown_surface(rows):
     """Surface that ends at no edge."""
-    for fields, geometry, road, start, end in rows["ROAD_SURFACE"]:
+    for fields, feature, road, start, end in rows["ROAD_SURFACE"]:
         if fields.get("status") == "grown" and end - start >= LEAST_GAP:
+            geometry = feature.geometry()   # lives as long as its parts
             rim = QgsGeometry(next(geometry.constParts()).exteriorRing().clone())
             text = tr("Road surface, {length:.0f} m: grown, no edge was found on one side at least").format(length=end - start)
             yield DoubtfulPiece(text, "surface", rim, road, start, LIKELY_WRONG["grown"] * (end - start))
@@ -214,10 +207,10 @@ def _along(rows, road, start, end):
     """The part of a line along a road between two stations, of the first kind of line that covers most of it; None where there is none."""
     best, most = None, 0.0
     for output in ALONG:
-        for fields, geometry, its_road, first, last in rows[output]:
+        for fields, feature, its_road, first, last in rows[output]:
             inside = min(last, end) - max(first, start)
             if its_road == road and last > first and inside > most and fields.get("kind") not in AWAY:
-                best, most = (fields, geometry, first, last), inside
+                best, most = (fields, feature.geometry(), first, last), inside
         if most > 0.9 * (end - start):
             break
     return None if best is None else _part(*best, start, end)
@@ -236,14 +229,15 @@ def _part(fields, geometry, first, last, start, end):
 
 
 def _rows(layer):
-    """[({field: value}, geometry, road, first and last station)] of a layer; rows that do not say where they lie are passed over."""
+    """[({field: value}, feature, road, first and last station)] of a layer; rows that do not say where they lie are passed over."""
     names = [] if layer is None else [field.name() for field in layer.fields()]
     rows = []
-    for feature in layer.getFeatures() if {"road", "station_m", "end_m"} <= set(names) else ():
+    for feature in layer.getFeatures() if {"road", "station_m"} <= set(names) else ():
         fields = dict(zip(names, feature.attributes()))
-        road, *ends = (_number(fields[name]) for name in ("road", "station_m", "end_m"))
-        if None not in (road, *ends) and not feature.geometry().isEmpty():
-            rows.append((fields, feature.geometry(), int(road), min(ends), max(ends)))
+        road, start, end = (_number(fields.get(name)) for name in ("road", "station_m", "end_m"))
+        if None not in (road, start) and not feature.geometry().isEmpty():
+            end = start if end is None else end
+            rows.append((fields, feature, int(road), min(start, end), max(start, end)))
     return rows
 
 

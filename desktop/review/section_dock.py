@@ -18,7 +18,7 @@ from ...core.common.arrays import round_step
 from ...core.road.scanlines.section_planes import slice_lines
 from ...core.survey.frame.placement import PlaceIndex
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
-from ...processing_provider.texts import tr
+from ...processing_provider.texts import numbers, tr
 from ..background import with_points
 from ..widgets import button, column, give_map_back, row, take_map
 from .section import HALF_WIDTH, Crossing, Section, corners, crossings, middle_of, section_at
@@ -284,13 +284,14 @@ class SectionView(QWidget):
             painter.setPen(QPen(QColor("#e2e2e2")))
             painter.drawLine(QPointF(x, frame.top()), QPointF(x, frame.bottom()))
             painter.setPen(INK)
-            painter.drawText(QRectF(x - 30, frame.bottom() + 2, 60, 14), int(Qt.AlignmentFlag.AlignHCenter), f"{value:g}")
+            painter.drawText(QRectF(x - 30, frame.bottom() + 2, 60, 14), int(Qt.AlignmentFlag.AlignHCenter), numbers(f"{value:g}"))
         for value in _ticks(self.low, self.high, frame.height() / 30):
             _, y = self._at(self.centre, value)
             painter.setPen(QPen(QColor("#e2e2e2")))
             painter.drawLine(QPointF(frame.left(), y), QPointF(frame.right(), y))
             painter.setPen(INK)
-            painter.drawText(QRectF(0, y - 7, LEFT - 4, 14), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), f"{value:.2f}")
+            painter.drawText(QRectF(0, y - 7, LEFT - 4, 14), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter),
+                             numbers(f"{value:.2f}"))
         painter.drawText(self._caption(), CAPTION, caption())
         painter.drawRect(frame)
 
@@ -398,7 +399,7 @@ class SectionView(QWidget):
             self.update()
         elif frame.contains(event.pos()) and len(self.points):
             offset, z = self._metres(event.pos().x(), event.pos().y())
-            QToolTip.showText(QCursor.pos(), f"{offset:+.2f} m, {z:.3f} m", self)
+            QToolTip.showText(QCursor.pos(), numbers(f"{offset:+.2f} m, {z:.3f} m"), self)
 
 
 def caption() -> str:

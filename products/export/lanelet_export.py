@@ -14,7 +14,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
-from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, Lanelet, Way
+from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, PATTERN_OF_WAY, Lanelet, Way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
 from .xml_tree import file_text
@@ -24,9 +24,10 @@ HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means 
 THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
 SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
 PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
-SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
-                      "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
+SUBTYPE_OF_PATTERN = {pattern: subtype for subtype, pattern in PATTERN_OF_WAY.items()} | {"double": "solid_solid"}
 TURN = 0.5              # rad from which a way through a junction is a turn
+GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH", "3.01"), ("CH", "3.02"), ("FR", "AB3a"), ("FR", "AB4"),
+            ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
 
 
 @dataclass(frozen=True)
@@ -224,14 +225,42 @@ class _Drafting:
         for lanelet in self.draft.lanelets:
             if lanelet.name:
                 parts[lanelet.name].append(lanelet)
-        for point, row in self.source.signals or ():
-            self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts)
+        signs = [self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts) for point, row in self.source.signals or ()]
+        if signs := [sign for sign in signs if sign is not None]:
+            self._give_way(signs, {name: lanelets[-1] for name, lanelets in parts.items()})
+
+    def _give_way(self, signs, last):
+        """Who waits at signs, (way, names of lanes), and for whom: lanes whose ways through the junction cross theirs and that have no such sign.
+
+        last : name of a lane -> its last lanelet, which alone is one of the rule
+        """
+        lanes, rows = self.lanes, {name: k for k, name in enumerate(self.lanes.lane_id)}
+        ways = {name: [rows[after] for after in lanes.successors[rows[name]] if after in rows and lanes.type[rows[after]] == "connector"]
+                for name in last if lanes.type[rows[name]] != "connector"}
+        borders = map(lanes.borders, range(len(lanes)))
+        area = [shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
+        signs = [(sign, [name for name in names if ways.get(name)]) for sign, names in signs]
+        waiting = {name for _, names in signs for name in names}
+        stops = [way for way in self.draft.ways if way.tags["type"] == "stop_line"]
+        for sign, names in signs:
+            # more than the stripe that neighbours have between them
+            taken = shapely.union_all([area[k] for name in names for k in ways.get(name, ())]).buffer(-WIDEST_DOUBLE)
+            first = [last[name] for name in sorted(ways.keys() - waiting) if any(taken.intersects(area[k]) for k in ways[name])]
+            before = shapely.union_all([area[rows[name]] for name in names])
+            lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
+            if first:
+                members = {"refers": [("way", sign)], "yield": [("relation", last[name].id) for name in names],
+                           "right_of_way": [("relation", lanelet.id) for lanelet in first], "ref_line": lines}
+                self._rule("right_of_way", members, [*(last[name] for name in names), *first])
 
     def _signal(self, place, row, parts):
-        """A light, sign or pole as a way, and as a rule of the lanelets that are nearest to it of each lane that it holds for."""
+        """A light, sign or pole as a way, and as a rule of the lanelets that are nearest to it of each lane that it holds for.
+
+        Returns the number of the way and the names of these lanes if they give way at it, else None.
+        """
         kind, height = row["kind"], row.get("height_m")
         if kind not in KIND_OF_WAY.values():
-            return
+            return None
         heading, width = np.radians(row.get("heading") or 0.0), row.get("width_m") or self.settings.signal_width
         reach = np.array([0.0, 0.0, height or width]) if kind == "pole" else np.array([np.cos(heading), -np.sin(heading), 0.0]) * width
         nodes = self._new_nodes(np.array([place, place + reach]) - (kind != "pole") * reach / 2)
@@ -244,17 +273,22 @@ class _Drafting:
         way = self._new_way(nodes, tags)
         named = [parts[name.strip()] for name in str(row.get("lanes") or "").split(",") if name.strip() in parts]
         if not named or kind == "pole":
-            return
+            return None
 
         def apart(lanelet):
             middle = self.draft.nodes[list(self.draft.ways[lanelet.way("centerline")].nodes), :2]
             return float(np.hypot(*(middle - place[:2]).T).min())
 
-        rule = Lanelet(len(self.draft.lanelets) + len(self.draft.rules), {"type": "regulatory_element", "subtype": tags["type"]},
-                       {"refers": [("way", way)]})
-        self.draft.rules.append(rule)
-        for lanelet in {lanelet.id: lanelet for lanelet in (min(lanelets, key=apart) for lanelets in named)}.values():
-            lanelet.members.setdefault("regulatory_element", []).append(("relation", rule.id))
+        self._rule(tags["type"], {"refers": [("way", way)]}, [min(lanelets, key=apart) for lanelets in named])
+        names = {lanelet.name: None for lanelets in named for lanelet in lanelets}
+        return (way, list(names)) if (row.get("country"), row.get("code")) in GIVE_WAY else None
+
+    def _rule(self, subtype, members, lanelets):
+        """A rule of traffic, and that lanelets obey it."""
+        number = len(self.draft.lanelets) + len(self.draft.rules)
+        self.draft.rules.append(Lanelet(number, {"type": "regulatory_element", "subtype": subtype}, members))
+        for lanelet in {lanelet.id: lanelet for lanelet in lanelets}.values():
+            lanelet.members.setdefault("regulatory_element", []).append(("relation", number))
 
 
 def _turn(middle: np.ndarray) -> str:

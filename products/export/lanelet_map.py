@@ -336,11 +336,12 @@ def _outlines(whole, places, network):
 
 def _signals(whole, places, crs):
     """The layer SIGNALS of the ways of lights, signs and poles, with the lanelets that obey them."""
-    layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(list)
+    layer, obeying = Features("PointZ", SIGNALS, crs=crs), defaultdict(dict)
     for lanelet in whole.lanelets.values():
         for rule in (whole.others.get(id) for _, id in lanelet.members.get("regulatory_element", ())):
-            for _, id in rule.members.get("refers", ()) if rule is not None else ():
-                obeying[id].append(str(lanelet.id))
+            waits = rule is not None and ("relation", lanelet.id) not in rule.members.get("right_of_way", ())
+            for _, id in rule.members.get("refers", ()) if waits else ():
+                obeying[id][str(lanelet.id)] = rule
     for way in whole.ways.values():
         points, kind = places[whole.rows(way)], KIND_OF_WAY.get(way.tags.get("type", ""))
         if kind and len(points):
@@ -371,7 +372,8 @@ def _left_out(whole):
     count = Counter(f"{lanelet.tags['subtype']} lanelet" for lanelet in whole.lanelets.values()
                     if lanelet.tags.get("subtype") in NEVER_DRIVEN and lanelet.tags["subtype"] != "crosswalk")
     return count + Counter(f"{kind} {relation.tags.get('subtype', '')}".strip() for relation in whole.others.values()
-                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED)
+                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED
+                           and not (relation.tags.get("subtype") == "right_of_way" and "refers" in relation.members))
 
 
 def kmh(text: str) -> float | None:

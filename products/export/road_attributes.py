@@ -16,6 +16,7 @@ from ...core.common.progress import Progress
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.lazy import pyproj
+from ..assess.matching import sample_lines
 from .lanelet_map import kmh
 from .sources import without_repeats
 from .xml_tree import read_xml
@@ -79,7 +80,10 @@ def attributes_along(lanes: Lanes, ways: Ways, settings: AttributeSettings = Att
     lanes : Lanes in map coordinates
     ways : in the same CRS
     """
-    places, heading, owner = _places(lanes, settings.step)
+    middles = [without_repeats(sum(lanes.borders(k))[:, :2] / 2) for k in range(len(lanes))]
+    drawn = np.flatnonzero([len(middle) > 1 for middle in middles])
+    points = sample_lines([shapely.linestrings(middles[k]) for k in drawn], settings.step)
+    places, heading, owner = points.xy, points.heading, drawn[points.line]
     starts = np.concatenate([np.empty((0, 2)), *(line[:-1] for line, _ in ways)])
     ends = np.concatenate([np.empty((0, 2)), *(line[1:] for line, _ in ways)])
     of_way = np.repeat(np.arange(len(ways)), [len(line) - 1 for line, _ in ways])
@@ -101,22 +105,6 @@ def attributes_along(lanes: Lanes, ways: Ways, settings: AttributeSettings = Att
     counts = np.bincount(owner, minlength=len(lanes))
     return {str(lanes.lane_id[k]): known for k, of_lane in votes.items()
             if (known := {name: value for name, count in of_lane.items() for value, number in count.most_common(1) if 2 * number > counts[k]})}
-
-
-def _places(lanes, step):
-    """((N, 2) places along the middles of lanes, (N,) radians that they are driven in, (N,) row of the lane)."""
-    parts = []
-    for k in range(len(lanes)):
-        middle = without_repeats(sum(lanes.borders(k))[:, :2] / 2)
-        if len(middle) > 1:
-            line = shapely.linestrings(middle)
-            stations = (np.arange(max(int(line.length / step), 1)) + 0.5) * line.length / max(int(line.length / step), 1)
-            near = np.clip(np.searchsorted(np.append(0.0, np.cumsum(np.hypot(*np.diff(middle, axis=0).T))), stations) - 1, 0, len(middle) - 2)
-            way = middle[near + 1] - middle[near]
-            parts.append(np.c_[shapely.get_coordinates(shapely.line_interpolate_point(line, stations)), np.arctan2(way[:, 1], way[:, 0]),
-                               np.full(len(stations), k)])
-    rows = np.concatenate([np.empty((0, 4)), *parts])
-    return rows[:, :2], rows[:, 2], rows[:, 3].astype(int)
 
 
 def _way_allowed(tags):

@@ -10,10 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
+from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import COLOUR, DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
+from ...core.curves.line_segments import SegmentIndex, single_lines
 from ...core.driving.layers import Lanes
 from ...core.io.crs import check_metric, horizontal_part, parse_crs, plane_wkt, same_crs
 from ...core.survey.store.road_points import RoadPoints
@@ -213,26 +215,18 @@ def wrapped(angle: Any) -> Any:
 
 
 class NearestValues:
-    """A number of the line or area of a layer that is nearest to a place.
-
-    name : of the field; features without a value are left out
-    """
+    """A number of the line of a layer that is nearest to a place; features without a value in the field `name` are left out."""
 
     def __init__(self, layer: Features | None, name: str) -> None:
         rows = [(g, float(row[name])) for g, row in layer or () if g is not None and row.get(name) is not None]
-        # of long lines the tree finds the nearest segment much sooner than the nearest line
-        parts, values = [], []
-        for geometry, value in rows:
-            places = shapely.get_coordinates(geometry)
-            pieces = shapely.linestrings(np.stack([places[:-1], places[1:]], axis=1)) if geometry.geom_type == "LineString" else [geometry]
-            parts += list(pieces)
-            values += [value] * len(pieces)
-        self._tree, self._values = shapely.STRtree(parts), np.array(values)
+        lines, owner = single_lines([geometry for geometry, _ in rows])
+        self._lines, self._values = SegmentIndex(lines), np.array([value for _, value in rows])[owner]
 
     def median(self, points: np.ndarray) -> float:
         """Of the numbers nearest to (N, 2) points within half a metre; NaN where there are none."""
-        _, parts = self._tree.query_nearest(shapely.points(points), max_distance=0.5, all_matches=False)
-        return float(np.median(self._values[parts])) if len(parts) else np.nan
+        nearest = self._lines.nearest(points)
+        near = nearest.line[nearest.distance <= 0.5]
+        return float(np.median(self._values[near])) if len(near) else np.nan
 
 
 # The uncertainty that driving lines carry, lane by lane.
@@ -278,29 +272,22 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     """
     vertices = np.concatenate([lanes.left, lanes.right])
     origin = road_points.origin
-    tree = cKDTree(vertices[:, :2] - origin[:2])
+    same, location = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)   # those of neighbours lie at one place
+    location, tree = location.ravel(), cKDTree(same - origin[:2])
     owners, heights = [], []
     for key in road_points.all_sections():
         points = road_points.section(*key)
         _, nearest = tree.query(np.c_[points.x, points.y], distance_upper_bound=SURFACE_REACH)
-        near = nearest < len(vertices)
+        near = nearest < len(same)
         owners.append(nearest[near])
         heights.append(np.asarray(points.z, float)[near])
     owner, height = np.concatenate([np.empty(0, int), *owners]), np.concatenate([np.empty(0), *heights]) + origin[2]
-    # vertices of neighbours lie at one place, of which the tree gives the points to one
-    same, location = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
-    location = location.ravel()
-    group = location[owner]
-    order = np.lexsort((height, group))
-    group, height = group[order], height[order]
-    counts = np.bincount(group, minlength=len(same))
-    first = np.append(0, np.cumsum(counts))[:-1]
-    enough = counts >= FEWEST_POINTS
+    enough = np.bincount(owner, minlength=len(same)) >= FEWEST_POINTS
     if not enough.any():
         raise RoadExtractionError("Road points do not lie where the lanes are: no border has any beside it. Choose the road points of the same "
                                   "survey, or leave them out.")
     median = np.full(len(same), np.nan)
-    median[enough] = height[(first + counts // 2)[enough]]
+    median[enough] = ndimage.median(height, owner, np.flatnonzero(enough))
     change = median[location] - vertices[:, 2]
     change[~(np.abs(change) < MOST_CHANGE)] = np.nan
     borders = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
@@ -543,32 +530,22 @@ def _distances(lines, segments, farthest=np.inf, apart_from=np.empty((0, 7))):
     """
     lines, index = _once(lines)
     places, begin = np.concatenate([np.empty((0, 3)), *lines]), np.cumsum([0, *map(len, lines)])
-    all_segments = np.concatenate([segments, apart_from])
-    points, tree = shapely.points(places[:, :2]), shapely.STRtree(shapely.linestrings(all_segments[:, :6].reshape(-1, 2, 3)[:, :, :2]))
-    indices, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
-    first, last = all_segments[near, :3], all_segments[near, 3:6]
-    run = (last - first)[:, :2]
-    share = np.clip(((places[indices, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
-    distance, counted = np.hypot(*(places[indices] - first - share[:, None] * (last - first)).T[:2]), near < len(segments)
-    across = _least(len(places), indices[counted], distance[counted] - segments[near[counted], 6])
-    left_out = _least(len(places), indices[~counted], distance[~counted])
-    far = np.flatnonzero(np.isinf(across) & np.isinf(left_out))   # the nearest of all segments is looked for only where none lies near
+    drawn = shapely.linestrings(np.concatenate([segments, apart_from])[:, :6].reshape(-1, 2, 3))
+    points, tree = shapely.points(places[:, :2]), shapely.STRtree(drawn)
+    place, near = np.concatenate([tree.query_nearest(points, max_distance=None if np.isinf(farthest) else farthest, all_matches=False),
+                                  tree.query(points, predicate="dwithin", distance=SAME_BORDER)], axis=1)
+    distance, counted = shapely.distance(drawn[near], points[place]), near < len(segments)
+    across, left_out, rise = np.full((3, len(places)), np.inf)
+    np.minimum.at(across, place[counted], distance[counted] - segments[near[counted], 6])
+    np.minimum.at(left_out, place[~counted], distance[~counted])
     across[left_out < across] = np.inf
-    pairs, distance = tree.query_nearest(points[far], max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
-    nearest = pairs[1] < len(segments)
-    across[far[pairs[0, nearest]]] = distance[nearest] - segments[pairs[1, nearest], 6]
     # where borders of several roads lie on each other, the one at the place's own height is its own
-    rise = _least(len(places), indices[counted], np.abs(places[indices, 2] - first[:, 2] - share * (last - first)[:, 2])[counted])
-    rise[np.isinf(across)] = np.inf
+    close = counted & (distance < SAME_BORDER) & np.isfinite(across[place])
+    place, line = place[close], drawn[near[close]]
+    feet = shapely.line_interpolate_point(line, shapely.line_locate_point(line, points[place]))
+    np.minimum.at(rise, place, np.abs(places[place, 2] - shapely.get_z(feet)))
     rows = np.concatenate([np.arange(begin[number], begin[number + 1]) for number in index])
     return np.maximum(across, 0.0)[rows], rise[rows], places[rows]
-
-
-def _least(count, indices, values):
-    """(count,) the least of the values of each index; inf where there is none."""
-    least = np.full(count, np.inf)
-    np.minimum.at(least, indices, values)
-    return least
 
 
 def _summary(values, places):

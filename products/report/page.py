@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from ...core.common.arrays import round_step
-from ...core.common.texts import language, told, tr, word
+from ...core.common.texts import language, numbers, told, tr, word
 from ...core.io.crs import NO_PLACE, place_of_raster
 from ...core.io.geotiff import GEOTIFF_TILE, filled_tiles
 from ...core.io.local_files import gdal_exceptions, open_raster
@@ -59,7 +59,7 @@ def number(value: float) -> str:
         return f"{value:,}".replace(",", "\u202f")
     size = abs(value)
     digits = 0 if size >= 1000 else 1 if size >= 100 else 2 if size >= 1 else 3
-    return f"{value:,.{digits}f}".replace(",", "\u202f")
+    return numbers(f"{value:,.{digits}f}".replace(",", "\u202f"))
 
 
 def round_down(value: float) -> float:
@@ -86,7 +86,7 @@ def _shown(value: Any, decimals: int | None = None) -> Any:
         return "–"
     if not _is_figure(value):
         return value
-    return number(value) if decimals is None or value != value else f"{value:.{decimals}f}"
+    return number(value) if decimals is None or value != value else numbers(f"{value:.{decimals}f}")
 
 
 def percent(share: float) -> float | None:

@@ -48,7 +48,13 @@
        <data_defined_properties>
         <Option type="Map">
          <Option type="QString" name="name" value=""/>
-         <Option name="properties"/>
+         <Option name="properties" type="Map">
+          <Option name="outlineWidth" type="Map">
+           <Option type="bool" name="active" value="true"/>
+           <Option type="QString" name="expression" value="if($id is null, 1, 0.06)"/>
+           <Option type="int" name="type" value="3"/>
+          </Option>
+         </Option>
          <Option type="QString" name="type" value="collection"/>
         </Option>
        </data_defined_properties>

@@ -25,9 +25,9 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import EQUAL, client_of, cluster_of
+from lanewright.core.execution.keep import Keep, work_folder
 from lanewright.core.execution.phase import Executor, Phase, Threads
 from lanewright.core.execution.tasks import versions
-from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.section_planes import all_scanlines
 from lanewright.core.survey import blocks
@@ -61,10 +61,6 @@ class AtPhase:
 
     run_together = Executor.run_together
 
-    def passing(self):
-        """The same of the phases whose results are not kept."""
-        return AtPhase(self.executor.passing(), self.name, self.act)
-
     def __getattr__(self, name):
         return getattr(self.executor, name)
 
@@ -89,16 +85,16 @@ def test_scanlines_made_by_workers_are_those_that_threads_make(cluster):
 
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_worker_that_is_killed_costs_nothing_that_was_finished(cluster, by_threads, tmp_path, sections_together, phase):
-    work, finished = WorkFolder(str(tmp_path / "work")), {}
+    work, finished = work_folder(str(tmp_path / "work")), {}
 
     def kill():
-        finished.update({path: path.stat().st_mtime_ns for path in work.path.glob("phase-*/*.plain")})
+        finished.update({path: path.stat().st_ino for path in work.glob("kept-*.plain")})
         cluster.kill_a_worker()
 
-    executor = AtPhase(KeptResults(cluster_of(cluster.address, False, work), work), phase, kill)
+    executor = AtPhase(Keep(cluster_of(cluster.address, False, work), work), phase, kill)
     assert numbers_of(boundaries(executor)) == by_threads
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
-    assert not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
+    assert not list(work.glob("run-*")) and not list(work.rglob("*.part*"))
 
 
 def ends_soon_when_cancelled(cluster, phase, work):
@@ -126,15 +122,15 @@ def test_cancel_ends_within_two_seconds_and_leaves_the_workers_idle(cluster, sec
 
 
 def test_where_the_scheduler_is_killed_one_sentence_says_so_and_the_next_run_goes_on(new_cluster, by_threads, tmp_path):
-    first, work = new_cluster(), WorkFolder(str(tmp_path / "work"))
-    executor = AtPhase(KeptResults(cluster_of(first.address, False, work), work), "_steps_of_methods", lambda: first.scheduler.kill())
+    first, work = new_cluster(), work_folder(str(tmp_path / "work"))
+    executor = AtPhase(Keep(cluster_of(first.address, False, work), work), "_steps_of_methods", lambda: first.scheduler.kill())
     with pytest.raises(RoadExtractionError, match="connection to the Dask scheduler was lost.*same WORK_FOLDER"):
         boundaries(executor)
-    assert not list(work.path.glob("run-*"))
-    done = len(list(work.path.glob("phase-*/*.plain")))
+    assert not list(work.glob("run-*"))
+    done = len(list(work.glob("kept-*.plain")))
     heard = Heard()
-    work = WorkFolder(str(tmp_path / "work"))
-    assert numbers_of(boundaries(KeptResults(Threads(1), work), progress=heard)) == by_threads
+    work = work_folder(str(tmp_path / "work"))
+    assert numbers_of(boundaries(Keep(Threads(1), work), progress=heard)) == by_threads
     assert done >= 1
 
 
@@ -297,7 +293,7 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
                survey["POINT_CLOUD"], "--TRAJECTORY", survey["TRAJECTORY"], "--SCHEDULER", cluster.address, "--ROAD_EDGES", str(result)]
     program = subprocess.Popen(command + (["--WORK_FOLDER", str(work)] if work_folder else []), stderr=subprocess.DEVNULL,
                                env={**os.environ, "TMPDIR": str(temporary)})
-    begun = (lambda: list(work.glob("phase-*/*.plain"))) if work_folder else (lambda: list(temporary.glob("lanewright-*/phase*.plain")))
+    begun = (lambda: list(work.glob("kept-*.plain"))) if work_folder else (lambda: list(temporary.glob("lanewright-*/phase*.plain")))
     while program.poll() is None and not begun():
         time.sleep(0.02)
     assert program.poll() is None, "it was still at work"
@@ -311,9 +307,9 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
     assert not list(work.glob("run-*")) and not list(temporary.glob("lanewright-*/*"))
     if not work_folder:
         return
-    finished = {path: path.stat().st_mtime_ns for path in work.glob("phase-*/*.plain")}
+    finished = {path: path.stat().st_ino for path in work.glob("kept-*.plain")}
     run("detectboundaries", **inputs, WORK_FOLDER=work, SCHEDULER=cluster.address, ROAD_EDGES=result)
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
     run("detectboundaries", **inputs, ROAD_EDGES=tmp_path / "undisturbed.gpkg")
     assert edges(result) == edges(tmp_path / "undisturbed.gpkg") and edges(result)
 
@@ -351,14 +347,13 @@ def test_a_worker_that_is_killed_while_it_reads_costs_no_part_that_was_read(clus
 
     class Kill(Progress):
         def report(self, fraction):
-            found = {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.plain")}
+            found = {path: path.stat().st_ino for path in work.glob("kept-*.plain")}
             if found and not finished:
                 finished.update(found)
                 cluster.kill_a_worker()
 
-    monkeypatch.setattr(WorkFolder, "discard", lambda parts: None)
     assert points_read(sample, monkeypatch, Kill(), scheduler=cluster.address, work_folder=str(work)) == points_read(sample, monkeypatch)
-    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+    assert finished and all(path.stat().st_ino == number for path, number in finished.items())
 
 
 def test_point_clouds_that_workers_do_not_see_are_read_here(cluster, sample, monkeypatch):

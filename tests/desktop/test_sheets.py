@@ -20,6 +20,7 @@ from lanewright.desktop.layout.sheets import BY_ITSELF, PAPERS, map_crs, sheet_l
 from lanewright.desktop.menu import credit_of, sheet_values, shown_layers
 from lanewright.processing_provider.results.road_maps import road_maps
 from lanewright.processing_provider.styling import LOOKS, STYLES, apply_style, explain_attributes
+from lanewright.processing_provider.texts import speak
 from qgis import processing
 from qgis.core import (
     Qgis,
@@ -169,6 +170,24 @@ def test_the_axis_crosses_a_junction_straight_where_edges_turn_around_its_corner
     assert np.abs(axis.places[:, 1] - 5_400_000.0).max() < 0.05 and axis.length > 395
 
 
+def test_the_axis_does_not_fold_where_a_lane_ends_and_an_edge_comes_around_a_corner():
+    lane = line_of(lambda s: (s * math.cos(1.1), -s * math.sin(1.1), -1.1), 0.0, 0, 7)
+    corner = [(2.0, -14.5), (2.3, -13.0), (3.5, -11.8), (6.0, -11.6), *((x, -11.6 - 0.35 * (x - 6)) for x in np.arange(8.0, 70.0, 2.0))]
+    edge = road_line(0, 2, np.array([(x, y, 100.0) for x, y in corner]), 11.0, 80.0)
+    axis, = axes_of([lane, edge])
+    turned = np.abs(np.diff([axis.heading(station) for station in axis.stations]))
+    assert turned.max() < 1 / 5.0, turned.max()
+
+
+def test_no_match_line_runs_through_a_junction():
+    arm = [road_line(1, 0, np.c_[np.full(60, 100.0 + offset), np.arange(8.0, 68.0), np.zeros(60)], 0.0, 59.0) for offset in (-3.0, 3.0)]
+    main = [road_line(0, 0, np.c_[np.arange(201.0), np.full(201, offset), np.zeros(201)], 0.0, 200.0) for offset in (-3.0, 3.0)]
+    sheets = sheets_along(axes_of(main + arm), 120.0, 69.0)
+    along = [match.x for sheet in sheets for match in sheet.matches if abs(match.y) < 1]
+    assert along and all(abs(x - 100) > 8 for x in along)
+    assert len([sheet for sheet in sheets if abs(sheet.y) < 20]) == 2
+
+
 def test_pieces_of_a_line_that_know_no_road_lead_one_axis_along_all_of_them(project):
     """Lines that were divided by outcome: each has stations of its own."""
     pieces = [(f"LINESTRING Z ({first} 0 100, {last} 0 100)", dict(lane=1)) for first, last in ((0, 24), (24, 30), (30, 118))]
@@ -278,6 +297,34 @@ def test_profile_and_cross_sections_are_further_pages(project):
     layout, more = made(project, street(project), profile=True, section_interval=20.0)
     assert more["PAGES"] == numbers["PAGES"] + 2 and more["SHEETS"] == numbers["SHEETS"]
     assert {"Longitudinal profile", "Cross-sections"} <= set(texts(layout)) and "Cross-sections" not in texts(plan)
+
+
+def test_a_short_profile_and_few_sections_share_a_page(project):
+    plan, numbers = made(project, street(project), paper="A2")
+    layout, more = made(project, street(project), paper="A2", profile=True, section_interval=50.0)
+    assert more["PAGES"] == numbers["PAGES"] + 1 and "Longitudinal profile, Cross-sections" in texts(layout)
+
+
+def printed(layout):
+    """All that is drawn on the pages, as text."""
+    pictures = [picture.picturePath() for picture in items(layout, QgsLayoutItemPicture)]
+    return "".join(base64.b64decode(path.partition(":")[2]).decode() for path in pictures if path.startswith("base64:"))
+
+
+@pytest.mark.parametrize("height, scale, told", [(0.12, "1:250", True), (0.12, "1:1000", False), (0.0, "1:250", False)])
+def test_the_sheet_explains_the_figures_that_stand_on_it_alone(project, height, scale, told):
+    rows = [("LINESTRING Z (0 0 100, 100 0 100)", dict(road=0, side="left", station_m=0.0, end_m=100.0, height_m=height))]
+    said = printed(made(project, added(project, "ROAD_EDGES", ROAD_EDGES, *rows), scale=scale)[0])
+    assert ("Height of the curb" in said) == told and "Axis with stations" in said and "Radius" not in said
+
+
+def test_numbers_on_a_german_sheet_have_a_comma(project):
+    speak("de")
+    try:
+        layout, _ = made(project, street(project), scale="1:500", profile=True)
+    finally:
+        speak("en")
+    assert ">101,00<" in printed(layout) and ">+2,00 % / 100 m<" in printed(layout) and any("1,4 cm" in text for text in texts(layout))
 
 
 def said(drawing):

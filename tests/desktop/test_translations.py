@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lanewright.algorithms.texts import TRANSLATIONS
 from lanewright.processing_provider.styling import STYLES, apply_style
-from lanewright.processing_provider.texts import chosen_language, speak, told, tr
+from lanewright.processing_provider.texts import chosen_language, numbers, speak, told, tr
 from qgis.core import QgsLayerTreeModel, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 
@@ -34,6 +34,12 @@ def test_every_text_of_the_code_is_in_the_translation_and_finished():
     german = messages("de")
     assert set(german) == set(texts()), "run make translations"
     assert all(german.values())
+
+
+def test_numbers_have_a_comma_in_german_and_names_and_versions_stay(german):
+    assert tr("{what} {number:.1f} cm").format(what="tile 1.5", number=1.44) == "tile 1.5 1,4 cm"
+    assert numbers("±3.5 m (1,042,726.5) of 0.2.0") == "±3,5 m (1.042.726,5) of 0.2.0"
+    assert "1,5 m" in told("Minimum curb height is 1.5 m; it must be between 0.01 m and 0.5 m.")
 
 
 def test_places_for_names_and_numbers_are_kept():
@@ -121,12 +127,12 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
 
 @pytest.mark.parametrize(("said", "told_in_german"), [
     ("Detecting curbs …", "Bordsteine werden gesucht …"),
-    ("Road edges: 1,204 m measured, 18 m bridged.", "Straßenränder: 1,204 m gemessen, 18 m überbrückt."),
+    ("Road edges: 1,204 m measured, 18 m bridged.", "Straßenränder: 1.204 m gemessen, 18 m überbrückt."),
     ("Driving lines: 2 lanes, right-hand traffic: 99 m measured", "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m gemessen"),
     ("Driving lines: 2 lanes, right-hand traffic: 99 m measured, 7 m inferred",
      "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m gemessen, 7 m erschlossen"),
     ("There is no file /data/B12/a.laz. Check the path of the point cloud.", "Es gibt keine Datei /data/B12/a.laz. Den Pfad der Punktwolke prüfen."),
-    ("The cell size is 0 m; it must be between 0.001 and 10 m.", "Die Zellgröße ist 0 m; erlaubt ist zwischen 0.001 und 10 m."),
+    ("The cell size is 0 m; it must be between 0.001 and 10 m.", "Die Zellgröße ist 0 m; erlaubt ist zwischen 0,001 und 10 m."),
     ("CJJ 37-2012: radius allows 60 km/h, length 11 m is below 25 m, the least for 30 km/h",
      "CJJ 37-2012: der Radius erlaubt 60 km/h, die Länge 11 m liegt unter 25 m, der kleinsten für 30 km/h"),
     ("Measure more points. No paint was found on this road, so there are no marking lines and no driving lines.",
@@ -135,19 +141,19 @@ def test_the_legend_of_a_layer_that_is_in_the_tree_already_turns_german(german, 
      "Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien: "
      "Die Fahrlinien verlaufen zwischen den Rändern der Straße."),
     ("kink at a link", "Knick an einer Verknüpfung"),
-    ("0.12 rad between it and lane -2 of road 7 at its start.", "0.12 rad zwischen ihm und Streifen -2 der Straße 7 an seinem Anfang."),
+    ("0.12 rad between it and lane -2 of road 7 at its start.", "0,12 rad zwischen ihm und Streifen -2 der Straße 7 an seinem Anfang."),
     ("The column 'Time' of a.csv holds times of a clock such as '1/2/2021 23:46'. GPS seconds are needed, and day and month cannot be distinguished. "
      "Export the trajectory with GPS time in seconds; or write dates as year-month-day.",
      "Die Spalte 'Time' von a.csv enthält Uhrzeiten wie '1/2/2021 23:46'. Nötig sind GPS-Sekunden, und Tag und Monat sind nicht zu "
      "unterscheiden. Die Trajektorie mit GPS-Zeit in Sekunden exportieren; oder Daten als Jahr-Monat-Tag schreiben."),
     ("The column 't' of a.csv goes up by 1.2e-05 from row to row as if it counted days, but 7.5 is no day of a known count (MJD, Julian days, a "
      "spreadsheet). GPS seconds are needed: export the trajectory with these.",
-     "Die Spalte 't' von a.csv steigt um 1.2e-05 von Zeile zu Zeile, als würden Tage gezählt, aber 7.5 ist kein Tag einer bekannten Zählung (MJD, "
+     "Die Spalte 't' von a.csv steigt um 1.2e-05 von Zeile zu Zeile, als würden Tage gezählt, aber 7,5 ist kein Tag einer bekannten Zählung (MJD, "
      "julianisches Datum, Tabellenkalkulation). Nötig sind GPS-Sekunden: die Trajektorie mit diesen exportieren."),
     ("The heights of the cloud alone seem to be in feet where x and y are in metres: the laser beams meet in the scanner only if heights are "
      "multiplied by 0.3048. Convert these heights, and run again.",
      "Die Höhen der Wolke allein sind anscheinend in Fuß, während x und y in Metern sind: Die Laserstrahlen treffen sich nur dann im Scanner, wenn "
-     "die Höhen mit 0.3048 multipliziert werden. Diese Höhen umrechnen und neu starten."),
+     "die Höhen mit 0,3048 multipliziert werden. Diese Höhen umrechnen und neu starten."),
     ("Corrections that match nothing in this run any more (2): road 0, left side, station 260 to 270 m; road 0, right side, station 90 to 100 m.",
      "Korrekturen, die in diesem Lauf zu nichts mehr passen (2): Straße 0, Seite links, Station 260 bis 270 m; "
      "Straße 0, Seite rechts, Station 90 bis 100 m."),

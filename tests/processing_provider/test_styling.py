@@ -40,8 +40,11 @@ from qgis.core import (
     QgsRectangle,
     QgsRenderContext,
     QgsSymbol,
+    QgsSymbolLayerUtils,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QSize
+from qgis.PyQt.QtGui import QColor
 
 KINDS = {
     "ROAD_EDGES": ("LineStringZ", ROAD_EDGES),
@@ -237,6 +240,23 @@ def test_the_legend_speaks_the_language_of_the_user(qgis_app):
         speak("en")
     assert layer.renderer().categories()[0].label() == "Bordstein"
     assert {rule.label() for rule in lines.renderer().rootRule().descendants()} >= {"Überbrückt"}
+
+
+def test_the_icon_of_markings_shows_their_paint_on_asphalt(qgis_app):
+    layer = layer_of("PolygonZ", MARKINGS)
+    apply_style(layer, STYLES / "markings.qml")
+    icon = QgsSymbolLayerUtils.symbolPreviewPixmap(layer.renderer().symbol(), QSize(16, 16)).toImage()
+    assert {QColor(icon.pixel(x, y)).name() for x in range(16) for y in range(16)} >= {"#ffffff", "#8d9299"}
+
+
+def test_heights_are_shown_as_a_hillshade_below_the_intensity_image(qgis_app, tmp_path):
+    path = str(tmp_path / "heights.tif")
+    dataset = gdal.GetDriverByName("GTiff").Create(path, 10, 10, 1, gdal.GDT_Float32)
+    dataset.GetRasterBand(1).WriteRaster(0, 0, 10, 10, np.arange(100, dtype=np.float32).tobytes())
+    del dataset
+    layer, (look, order) = QgsRasterLayer(path, "heights"), LOOKS["DEM"]
+    Styler(STYLES / f"{look}.qml", (), "DEM").postProcessLayer(layer, QgsProcessingContext(), None)
+    assert layer.renderer().type() == "hillshade" and order < LOOKS["INTENSITY_IMAGE"][1]
 
 
 def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):

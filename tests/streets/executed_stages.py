@@ -11,7 +11,7 @@ from lanewright.core.driving import heights
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.in_step import items_of_phases
-from lanewright.core.execution.work_folder import KeptResults
+from lanewright.core.execution.keep import Keep
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
@@ -57,8 +57,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(linking, "LINKING_WINDOW_CELLS", 250)
         patch.setattr(linking, "LINKED_POINTS", 300)
         if executor is not None:
-            patch.setattr(opening, "executor_for", lambda *_: KeptResults(executor, work) if work else executor)
-        survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work.path) if work else ""))
+            patch.setattr(opening, "executor_for", lambda *_: Keep(executor, work) if work else executor)
+        survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work) if work else ""))
         try:
             edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
             road_points, surface = extract_road_surface(survey, edges, counted=True)
@@ -69,8 +69,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
             pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
             paint = extract_markings(road_points, image, survey.frame, progress=progress)
             image.close()
-            paint = remove_outliers(paint, progress=progress, executor=survey.executor.passing())
-            markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor.passing())
+            paint = remove_outliers(paint, progress=progress, executor=survey.executor)
+            markings, clustered = cluster_markings(paint, survey.frame, progress=progress, executor=survey.executor)
             edges = edges.densified(survey.frame)
             lines = fit_marking_lines(clustered, markings, survey.frame, progress=progress, edges=edges, road_points=road_points)
             driving, _, lanes = make_driving_lines(lines, survey.frame, progress=progress, markings=markings, edges=edges, road_points=road_points)

@@ -1,6 +1,7 @@
 """The whole chain, with what its user sees of the time: how the bar moves and how long Cancel is not heard."""
 
 import os
+import re
 import resource
 import threading
 import time
@@ -34,7 +35,8 @@ class Watch(Progress):
         self.report(self.moments[-1][1])
 
     def info(self, text):
-        self.moments.append((*self.moments[-1][:2], text))
+        """Notes how a line of the log begins: what follows are figures, and places on this computer."""
+        self.moments.append((*self.moments[-1][:2], re.split("[:,]", text)[0]))
 
     def figures(self):
         """How far the bar lay from the truth at worst (of 1), and the longest time without a question: seconds, where."""

@@ -68,14 +68,10 @@ def _user(results):
             ("peak MiB", 0), ("million points", 1), ("m", 0), ("bar off, %", 0)))
         longest, line = (results.get("runs", run, "longest s without asking for Cancel", figure) for figure in ("most", "after the line"))
         asked = ("" if longest is None else
-                 f"; the bar is {off} % off at most, and Cancel is heard within {longest:.2f} s (the longest is “{_short(line)}”)")
+                 f"; the bar is {off} % off at most, and Cancel is heard within {longest:.2f} s (the longest is “{line}”)")
         yield f"*{run}*: {points} million points on {metres} m take {peak} MiB{asked}."
     if results.names("cancel"):
         moments, middle, most, line, left = (results.get("cancel", "", "", figure) for figure in (
             "moments", "median s", "most s", "after the line", "files left"))
         yield (f"Cancel was pressed at {moments:.0f} random moments of the dense survey: it was over after {middle:.2f} s (median), "
-               f"{most:.2f} s at most (“{_short(line)}”); files left behind: {left}.")
-
-
-def _short(line):
-    return line.partition(":")[0]
+               f"{most:.2f} s at most (“{line}”); files left behind: {left}.")

@@ -75,7 +75,7 @@ class PaintSource:
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open points and image."""
         return Recipe("core.markings.paint.windows:PaintSource", dict(
-            road_points=self.road_points.recipe(folder), image=self.image.recipe(folder), folder=str(folder)))
+            road_points=self.road_points.recipe(folder), image=self.image.recipe(folder), folder=str(self.paint.folder)))
 
     def state(self, item: tuple[int, int]) -> list[Any]:
         """What paint in a window depends on: the road and its image there, and in the halo."""

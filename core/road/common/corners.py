@@ -34,7 +34,7 @@ class CurbSteps(Rows):
     run: np.ndarray   # (M,) m across of the face, less what noise adds
     noise: np.ndarray   # (M,) m, scatter of heights about the line of the road side
     scanner_noise: np.ndarray   # (M,) m, the scanner's own noise there
-    support: np.ndarray   # (M,) points of road side and face
+    support: np.ndarray   # (M,) points of road side and face; those that several profiles use count by their share
     behind: np.ndarray   # (M,) points of the raised ground
 
     @property
@@ -43,11 +43,13 @@ class CurbSteps(Rows):
         return np.ones(len(self), bool)
 
 
-def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float) -> CurbSteps:
+def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float,
+                    least_sharpness: float = -np.inf) -> CurbSteps:
     """The step at each rising cell, where it proves to be one.
 
     rows, cells : (M,) profiles and cells in which the ground rises
     min_height, max_height : m, of a step
+    least_sharpness : share of a step that must lie right at its face: few points on the face do not tell it from a ramp
 
     Returns CurbSteps, at most M, in the order of the cells
     """
@@ -78,9 +80,9 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
             better &= view["good"]
             for name, values in view.items():
                 best[name][remeasured[better]] = values[better]
-    good = best["good"]
+    good = best["good"] & (best["sharpness"] >= least_sharpness)
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
-                     **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
+                     **{name: values[good] for name, values in best.items() if name not in ("good", "likely", "sharpness")})
 
 
 def _measure(lines, rows, cells, owner, index, min_height, max_height):
@@ -130,8 +132,8 @@ class StepPatches:
     def corners(self) -> dict[str, np.ndarray]:
         """The corner of every candidate.
 
-        Returns dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `good` : bool, is it a step?; `likely` : bool,
-        may it be one in another direction or view?
+        Returns dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `sharpness` : share of the step right
+        at its face; `good` : bool, is it a step?; `likely` : bool, may it be one in another direction or view?
         """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = np.flatnonzero((u < -CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin))
@@ -184,7 +186,7 @@ class StepPatches:
 
     def _faces(self, rise, level, slope, grade, noise, n_road, height, n_behind, stays):
         """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
-        owner, u, s, count = self.owner, self.u, self.s, self.count
+        owner, u, s, count, rise_around = self.owner, self.u, self.s, self.count, rise
         scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(CURBS.face_lower_share * height, 2 * scatter), 0.45 * height)
@@ -206,11 +208,16 @@ class StepPatches:
         share = np.maximum((upper - lower) / np.maximum(height, 1e-3), CURBS.min_face_share)
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
         run = np.where(n_face < 3, 0.0, np.maximum(run - CURBS.face_noise_sigmas * scatter, 0.0))
+        beside = self.u - corner.take(self.owner)
+        with np.errstate(invalid="ignore"):
+            below, above = (np.bincount(self.owner, rise_around * part, count) / np.bincount(self.owner, part, count)
+                            for part in (beside < -CURBS.face_margin, beside > CURBS.face_margin))
+        sharpness = np.nan_to_num((above - below) / height, nan=1.0)
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
                 & (n_face >= 1) & (run <= CURBS.max_face_width))
         return dict(s=station, u=corner + self.skew * station, h=level + slope * corner + grade * station, skew=skew, height=height, run=run,
-                    noise=noise, support=n_road + n_face, behind=n_behind, good=good)
+                    noise=noise, support=n_road + n_face, behind=n_behind, sharpness=sharpness, good=good)
 
     def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""

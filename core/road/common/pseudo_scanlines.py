@@ -24,12 +24,14 @@ TOP_QUANTILE_SIGMAS = 1.2816   # derived: CURBS.top_quantile of a normal distrib
 SIGMA_PER_MEAN_DEVIATION = 1.2533   # derived: sqrt(pi / 2), of a normal distribution
 
 
-def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float, least_share: float = CURBS.min_ground_layer_share,
+                  least_points: int = 1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The lowest layer of every cell: from one layer to the next the height jumps, and what lies above is no ground.
 
     place : (N,) cell of every point, ascending
     h : (N,) m, heights, ascending within a cell
     layer_jump : m of height between two layers
+    least_share, least_points : share of the points of its cell, and points, of a layer; a smaller one is no ground
 
     Returns
         ground : (N,) bool, the points of the lowest layers
@@ -46,13 +48,13 @@ def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[
     layer_count = np.diff(layer_start, append=len(place))
     first_of_cell = new_cell[layer_start]
     ground = np.ones(len(place), bool)
-    if first_of_cell.all():
+    if first_of_cell.all() and least_points == 1:
         return ground, layer_start, layer_count
     layer_cell = np.cumsum(first_of_cell) - 1
     cell_count = np.bincount(layer_cell, layer_count)
-    real = layer_count >= CURBS.min_ground_layer_share * cell_count[layer_cell]
+    real = layer_count >= np.maximum(least_points, least_share * cell_count[layer_cell])
     lowest = np.flatnonzero(real)
-    lowest = lowest[np.r_[True, np.diff(layer_cell[lowest]) > 0]]
+    lowest = lowest[np.diff(layer_cell[lowest], prepend=-1) > 0]
     upper = np.ones(len(layer_start), bool)
     upper[lowest] = False
     ground[expand_ranges(layer_start[upper], layer_start[upper] + layer_count[upper])[1]] = False
@@ -111,6 +113,11 @@ class PseudoScanLines:
         """(P, C)"""
         return self.low.shape
 
+    @property
+    def count(self) -> np.ndarray:
+        """(P, C) points of the lowest layers."""
+        return np.diff(np.append(0, np.cumsum(self.ground))[self.starts]).reshape(self.shape)
+
     def offset(self, cell: np.ndarray) -> np.ndarray:
         """Outward offset of the middle of cells, m."""
         return self.origin + (np.asarray(cell) + 0.5) * self.spacing
@@ -126,11 +133,28 @@ def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jum
     """The same profiles from the points alone that lay `nearest` <= distance < `farthest` metres ahead when they were measured."""
     along = lines.along.take(lines.point)
     indices = np.flatnonzero((along >= nearest) & (along < farthest))
+    return replace(_of_points(lines, indices, _places(lines)[indices], layer_jump), spread=lines.spread)
+
+
+def widened(lines: PseudoScanLines, reach: int, layer_jump: float) -> PseudoScanLines:
+    """The same profiles, each with the points of as many more, `reach`, on either side of it."""
+    (rows, cells), count = lines.shape, 2 * reach + 1
+    place = (_places(lines) + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
+    inside = np.flatnonzero((place >= 0) & (place < rows * cells))
+    indices = np.tile(np.arange(len(lines.point)), count)[inside]
+    return replace(_of_points(lines, indices, place[inside], layer_jump), noise=lines.noise, spread=lines.spread)
+
+
+def _places(lines):
+    """(N,) cell of every sorted point."""
+    return np.repeat(np.arange(lines.low.size), np.diff(lines.starts))
+
+
+def _of_points(lines, indices, place, layer_jump):
+    """Profiles like others of some of their sorted points, in cells `place`."""
     point, (rows, cells) = lines.point.take(indices), lines.shape
-    result = pseudo_scan_lines(lines.u.take(point), lines.s.take(point), lines.h.take(indices), along.take(indices),
-                               (lines.first, lines.first + rows), lines.width, lines.spacing, layer_jump, lines.origin,
-                               lines.origin + cells * lines.spacing)
-    return replace(result, spread=lines.spread)
+    return profiles_of_cells((lines.u.take(point), lines.s.take(point), lines.h.take(indices), lines.along.take(point)), place,
+                             (lines.first, lines.first + rows), cells, lines.width, lines.spacing, layer_jump, lines.origin)
 
 
 def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.ndarray, profiles: tuple[int, int], width: float,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from ...common.arrays import mask_runs
 from ...survey.frame.road import Road
@@ -16,7 +17,7 @@ from ..common.sides import SIDE_SIGNS
 from ..common.tracking import is_clean, is_road
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .main_curbs import CurbLines, SearchLimit
+from .main_curbs import SearchLimit, line_tree, median_distance, tips_of
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 
@@ -79,7 +80,7 @@ def _chain_scatter(curb):
 
 
 def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.ndarray, runs: Sequence[tuple], line: Road,
-                   limits: Mapping[str, SearchLimit], passes: Sequence[Pass],
+                   limits: Mapping[str, SearchLimit], passes: Sequence[Pass], usual: float = np.nan,
                    elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
     """The lines that are curbs, each with its kind and side.
 
@@ -88,24 +89,26 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
     limits : side -> SearchLimit
     passes : of the road
+    usual : m, height of the road's own curbs, NaN where there are none
     elsewhere : (x, y) of the main curbs of other roads, local m
     """
     if not chains:
         return []
-    other_lines = CurbLines(elsewhere)
+    other_lines = line_tree(elsewhere)
     mains = {k: curb for k, chain in enumerate(chains) if (curb := _own_curb(chain, steps, falls, line, limits, passes, other_lines)) is not None}
     runs = [*runs, *((curb.side, (curb.steps.x, curb.steps.y, curb.steps.h)) for curb in mains.values())]
     chains = [chain for k, chain in enumerate(chains) if k not in mains]
-    main_ends, linked = CurbLines([(x, y) for _, (x, y, _) in runs]), PlanSteps.join([PlanSteps.none(), *(steps[chain.steps] for chain in chains)])
+    tips, linked = tips_of(runs), PlanSteps.join([PlanSteps.none(), *(steps[chain.steps] for chain in chains)])
     result, separate = list(mains.values()), list[CurbReturn]()
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
-            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], main_ends)
+            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], tips)
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
-    return result + _free_and_islands(separate, result, runs, elsewhere)
+    known = line_tree([*((x, y) for _, (x, y, _) in runs), *((curb.steps.x, curb.steps.y) for curb in result), *elsewhere])
+    return result + _of_the_road(separate, known, usual)
 
 
 def _sides_continued(runs, chains, steps):
@@ -133,12 +136,17 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
     return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
 
 
-def _free_and_islands(apart, continued, runs, elsewhere):
-    """Of lines apart the corners that other curbs confirm, and the outlines of islands."""
-    own_curbs = [(x, y) for _, (x, y, _) in runs] + [(curb.steps.x, curb.steps.y) for curb in continued]
-    before, confirming = CurbLines(own_curbs), CurbLines([*own_curbs, *elsewhere])
-    islands = [curb for curb in apart if curb.kind == "island" and not lies_behind(curb.steps, before)]
-    return [curb for curb in apart if curb.kind == "corner" and is_free_corner(curb.steps, confirming)] + _long_islands(islands)
+def _of_the_road(apart, known, usual):
+    """Of lines apart those that are curbs of this road: its curbs are of one height; an island that goes on for long may have another.
+
+    known : tree of the curbs that are known; usual : m, height of the road's own curbs, NaN where there are none
+    """
+    off = {id(curb): abs(np.log(np.median(curb.steps.height) / usual)) for curb in apart}
+    islands = [curb for curb in apart if curb.kind == "island"]
+    corners = [curb for curb in apart if curb.kind == "corner" and off[id(curb)] <= RETURN.max_height_step
+               and median_distance(known, curb.steps.x, curb.steps.y) > RETURN.outline_margin]
+    least = [CURBS.min_faint_length if off[id(curb)] > RETURN.max_height_step else RETURN.min_island_length for curb in islands]
+    return corners + _long_islands(islands, np.array(least))
 
 
 def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
@@ -150,7 +158,7 @@ def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
     out = SIDE_SIGNS[side] * (line_steps.ny * np.cos(line.heading(s)) - line_steps.nx * np.sin(line.heading(s)))
     if chain.closed or not free.any() or np.ptp(s[free]) < CURBS.min_curb_length or np.median(out) < RETURN.min_parallel_cosine \
             or np.mean(np.isfinite(falls[chain.steps])) >= RETURN.min_island_share \
-            or elsewhere.lines and np.median(elsewhere.distances(line_steps.x, line_steps.y)) <= RETURN.outline_margin:
+            or median_distance(elsewhere, line_steps.x, line_steps.y) <= RETURN.outline_margin:
         return None
     return CurbReturn(line_steps, s, d, side, "main")
 
@@ -175,20 +183,20 @@ def _straight_part(curb):
 
 
 def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
-                          runs: CurbLines) -> list[CurbReturn]:
+                          tips: cKDTree) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
     curb : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
     limit : SearchLimit of that side
-    runs : CurbLines, the main curbs
+    tips : ends of the main curbs
     """
     along = _road_cosine(curb, s, line)
     if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
                                                                        np.nanmax(s) - RETURN.main_curb_overlap):
         return [CurbReturn(curb, s, d, side, "main")]
-    near = runs.end_distances(curb.x[[0, -1]], curb.y[[0, -1]])
+    near = tips.query(np.c_[curb.x, curb.y][[0, -1]])[0]
     # in order from the main curb outward
     order = np.arange(len(curb)) if near[0] <= near[1] else np.arange(len(curb))[::-1]
     cut = len(curb) if max(near) <= CURBS.max_joined_gap else _where_straight(curb, order, along)
@@ -231,88 +239,11 @@ def _where_straight(curb, order, along):
     return len(x)
 
 
-def _long_islands(lines):
-    """Lines about islands that are long enough, together with those nearby."""
+def _long_islands(lines, least):
+    """Lines about islands that are long enough, together with those nearby; `least` : (N,) m that each needs."""
     if not lines:
         return []
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
     places = [shapely.MultiPoint(np.c_[line.steps.x, line.steps.y]) for line in lines]
     line, near = shapely.STRtree(places).query(places, predicate="dwithin", distance=RETURN.max_island_gap)
-    return [lines[k] for k in np.flatnonzero(np.bincount(line, length[near]) >= RETURN.min_island_length)]
-
-
-# What lies behind a curb is no island: a sidewalk between two ramps is raised on both sides as an island is.
-
-
-def lies_behind(line: PlanSteps, curbs: CurbLines) -> bool:
-    """Does one who goes straight down from a line step off another curb before stepping up one?
-
-    line : N PlanSteps in order
-
-    Returns whether that holds at most places that meet a curb at all
-    """
-    ax, ay, sx, sy = curbs.segments_about(line.x, line.y, 2 * RETURN.road_width).T
-    if not len(ax):
-        return False
-    off = []
-    for k in np.unique(np.linspace(0, len(line) - 1, RETURN.places).round().astype(int)):
-        rx, ry = -line.nx[k], -line.ny[k]
-        dx, dy = ax - line.x[k], ay - line.y[k]
-        # on the right of a segment is uphill, so where the cross product is negative the way across it leads down
-        cross = rx * sy - ry * sx
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distance, share = (dx * sy - dy * sx) / cross, (dx * ry - dy * rx) / cross
-        met = np.flatnonzero((distance > RETURN.own_curb) & (distance < RETURN.road_width) & (share >= 0.0) & (share <= 1.0))
-        if len(met):
-            off.append(cross[met[np.argmin(distance[met])]] < 0.0)
-    return bool(off) and float(np.mean(off)) > 0.5
-
-
-# Corners between two dropped crossings: nothing joins them to a curb, but they bend evenly from one curb end to another.
-
-END_MARGIN = 0.01   # derived: m, more than distances are rounded by
-
-
-def is_free_corner(curb: PlanSteps, curbs: CurbLines) -> bool:
-    """Does a line bend evenly about its uphill side, and point at the end of a curb both ways?
-
-    curb : N PlanSteps in order
-    curbs : CurbLines, the other curbs
-    """
-    if len(curb) < 4 or not curbs.lines:
-        return False
-    # the circle of least squares (Kåsa)
-    mx, my = curb.x.mean(), curb.y.mean()
-    x, y = curb.x - mx, curb.y - my
-    (cx, cy, c), *_ = np.linalg.lstsq(np.c_[2 * x, 2 * y, np.ones(len(x))], x * x + y * y, rcond=None)
-    radius = float(np.sqrt(max(c + cx * cx + cy * cy, 0.0)))
-    if not RETURN.corner_radii[0] <= radius <= RETURN.corner_radii[1]:
-        return False
-    off = np.abs(np.hypot(x - cx, y - cy) - radius)
-    angle = np.unwrap(np.arctan2(y - cy, x - cx))
-    uphill = np.median((cx - x) * curb.nx + (cy - y) * curb.ny) > 0
-    if off.max() > RETURN.max_bend_deviation or abs(angle[-1] - angle[0]) < RETURN.min_corner_angle or not uphill:
-        return False
-    turn = np.sign(angle[-1] - angle[0])
-    for k, out in ((0, -turn), (-1, turn)):
-        tip = np.array([curb.x[k], curb.y[k]])
-        # along the circle, out of the line
-        direction = out * np.array([-np.sin(angle[k]), np.cos(angle[k])])
-        if not any(_points_at(tip, direction, end, radius, out) for end in curbs.ends_about(tip, RETURN.max_crossing_gap + END_MARGIN)):
-            return False
-    return True
-
-
-def _points_at(tip, direction, end, radius, way):
-    """Does a circle that leaves `tip` along `direction` lead to a curb's end, between straight on and bending on as before?"""
-    gap = end[:2] - tip
-    length = np.hypot(*gap)
-    if not 1e-3 < length <= RETURN.max_crossing_gap:
-        return False
-    chord = np.arctan2(direction[0] * gap[1] - direction[1] * gap[0], direction @ gap)
-    half = 0.5 * length / radius
-    if not -RETURN.pointing_tolerance <= way * chord <= half + RETURN.pointing_tolerance:
-        return False
-    # seen from the curb's end, the corner lies ahead or to the side to which the corner bends
-    back = np.arctan2(end[2] * -gap[1] - end[3] * -gap[0], end[2:] @ -gap)
-    return bool(-RETURN.pointing_tolerance <= -way * back <= half + RETURN.pointing_tolerance)
+    return [lines[k] for k in np.flatnonzero(np.bincount(line, length[near]) >= least)]

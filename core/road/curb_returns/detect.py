@@ -31,7 +31,7 @@ from .classify import classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
-from .main_curbs import KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along
+from .main_curbs import KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along, usual_height
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
 from .tracking import join_chains, link_plan_steps
@@ -74,11 +74,12 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
 def _returns_of_road(curb_points, on_islands, decimation, road, main_and_chain, seen, settings, elsewhere, look):
     """The work on one road: which main curbs are islands, the main curb, the number of the next chain and the curbs away from it."""
     survey, of_road, (main, chain) = decimation.survey, curb_points.road == road, main_and_chain
-    curbs = yield from find_curb_returns(decimation, road, main, seen, settings, elsewhere, look)
+    usual = usual_height(curb_points[of_road])
+    curbs = yield from find_curb_returns(decimation, road, main, seen, settings, usual, elsewhere, look)
     if not are_replaced(curb_points[of_road & on_islands], curbs):
         main, chain = main_curbs_of(curb_points, survey, road)
         again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
-        return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, elsewhere, look))
+        return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, usual, elsewhere, look))
     return np.ones(len(of_road), bool), main, chain, curbs
 
 
@@ -145,13 +146,14 @@ def _steps_in_plan(decimation, searches, settings, progress=Progress()):
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],
-                      seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings,
+                      seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings, usual: float = np.nan,
                       elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (), look: RoadLook | None = None) -> Work:
     """Part of a work: corners, side streets and islands of one road, a list of CurbReturn.
 
     main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
         1 where it was measured and 0 where it is hidden
     seen : as of `_steps_in_plan`
+    usual : m, height of the road's own curbs
     elsewhere : (x, y) of the main curbs of other roads, local m
     look : RoadLook of the road; without, a curb may lie anywhere
     """
@@ -162,7 +164,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     runs, (steps, falls, scanner_noise) = main_runs(main, line), measured
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)
               and has_road_before(steps[c.steps], line, look)]
-    curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), elsewhere)
+    curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
     curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings)
     return (yield from with_curbs_beyond(curbs, decimation, road, known_places))

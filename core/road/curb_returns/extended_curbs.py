@@ -26,7 +26,7 @@ from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
 from .ground_raster import GroundRaster, averaged, ground_raster
-from .main_curbs import CurbLines, KnownPlaces, SearchLimit
+from .main_curbs import KnownPlaces, SearchLimit, tips_of
 from .steps import PATCH_HALF_WIDTH, PlanSteps, points_about, steps_of_points
 from .tracking import LineEnds, PlanStepChain
 
@@ -237,7 +237,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
     ends = ends[~met.within(ends.x + RETURN.leaving_length * ends.tx, ends.y + RETURN.leaving_length * ends.ty, 0.5 * RETURN.leaving_length)]
     phase = phase_along(_led_steps_of_section, decimation, (ends, settings), settings.profile_width, _join_led)
     continuations: list[CurbReturn] = []
-    main_ends = CurbLines([(x, y) for _, (x, y, _) in runs])
+    main_ends = tips_of(runs)
     extended = {id(curb): curb for curb in curbs}
     for number, line_steps in _join_led(list(decimation.executor.run(phase, [(road, *section) for section in sections]))):
         # inside a tight bend a place may have no station

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 
 import numpy as np
 import shapely
@@ -16,7 +15,6 @@ from ..common.curb_points import CurbPoints
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
 from .steps import PlanSteps
-from .tracking import LineEnds
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
@@ -30,6 +28,13 @@ def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[d
             rows[:, 2] -= expected_height(survey, road, rows[:, 0])
         main[side] = rows
     return main, int(curbs.chain.max(initial=-1)) + 1
+
+
+def usual_height(curb_points: CurbPoints) -> float:
+    """m, height of the curbs of a road as they are where nothing lowers them; NaN where none was measured."""
+    heights = curb_points.height[(curb_points.part == "bottom") & (curb_points.status == "measured")]
+    heights = heights[np.isfinite(heights)]
+    return float(np.quantile(heights, RETURN.full_height)) if len(heights) else np.nan
 
 
 class SearchLimit:
@@ -149,54 +154,18 @@ class KnownPlaces:
 
 # Lines of curb in plan, among which those near a place are looked up: a long road has many of them.
 
-Line = tuple[np.ndarray, np.ndarray]
+
+def tips_of(runs: Sequence[tuple]) -> cKDTree:
+    """Local x, y of both ends of main curbs as of `main_runs`."""
+    return cKDTree(np.concatenate([np.empty((0, 2)), *(np.c_[x, y][[0, -1]] for _, (x, y, _) in runs)]))
 
 
-class CurbLines:
-    """Lines of curb.
+def line_tree(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> shapely.STRtree:
+    """Lines (x, y), each (N,) local m."""
+    return shapely.STRtree([shapely.linestrings(x, y) for x, y in lines if len(x) > 1])
 
-    lines : L lines (x, y), each (N,) local m, uphill on the right
-    """
 
-    def __init__(self, lines: Sequence[Line]):
-        self.lines = lines
-
-    @cached_property
-    def segments(self) -> np.ndarray:
-        """(S, 4) x, y of the beginning of each segment, and how far it leads in x and y."""
-        parts = [np.c_[x[:-1], y[:-1], np.diff(x), np.diff(y)] for x, y in self.lines if len(x) > 1]
-        return np.concatenate([np.empty((0, 4)), *parts])
-
-    def segments_about(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
-        """(K, 4) those segments that begin within a distance of the box about (N,) places, in their order."""
-        inside = [(at >= places.min() - distance) & (at <= places.max() + distance) for at, places in zip(self.segments.T, (x, y))]
-        return self.segments[inside[0] & inside[1]]
-
-    @cached_property
-    def ends(self) -> np.ndarray:
-        """(2 L, 4) x, y and the direction out of the line of both ends of every line; its last metre gives the direction."""
-        ends = LineEnds.of([(x, y, np.zeros(len(x))) for x, y in self.lines], 1.0)
-        return np.concatenate([ends.heads, ends.tails])[:, [0, 1, 3, 4]]
-
-    @cached_property
-    def _tips(self):
-        return cKDTree(self.ends[:, :2])
-
-    def ends_about(self, place: np.ndarray, distance: float) -> np.ndarray:
-        """(K, 4) those of the ends that lie within a distance of a place, (2,) m."""
-        return self.ends[self._tips.query_ball_point(place, distance)]
-
-    def end_distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(N,) m from (N,) places to the nearest end of any line, infinite where there is none."""
-        return self._tips.query(np.c_[x, y])[0]
-
-    @cached_property
-    def _tree(self):
-        return shapely.STRtree([shapely.linestrings(x, y) for x, y in self.lines if len(x) > 1])
-
-    def distances(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(N,) m from (N,) places to the nearest line; there must be one."""
-        (row, _), distance = self._tree.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
-        result = np.full(len(x), np.inf)
-        result[row] = distance
-        return result
+def median_distance(lines: shapely.STRtree, x: np.ndarray, y: np.ndarray) -> float:
+    """m from (N,) places to the nearest line, the median; infinite where there is none."""
+    _, distance = lines.query_nearest(shapely.points(x, y), return_distance=True, all_matches=False)
+    return float(np.median(distance)) if len(distance) else np.inf

@@ -73,7 +73,8 @@ def _edge_of(points, places, first, last, passes, road, number):
     closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= EDGE.same_place_distance
     # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
     places = np.concatenate([first, places, last])
-    vertices, residual = _drawn(places)
+    smooth = _smoothed(places)
+    vertices, residual = _through(smooth), np.hypot(*(smooth - places)[:, :2].T)
     along, shared = _chord_length(*places.T[:2]), np.nan_to_num(points.sigma)
     shared = np.concatenate([shared[:len(first)], shared, shared[len(shared) - len(last):]])
     vertices = np.round(vertices, COORDINATE_DECIMALS)
@@ -87,12 +88,6 @@ def _edge_of(points, places, first, last, passes, road, number):
     sigma = np.interp(vertex_lengths * along[-1] / vertex_lengths[-1], along, sigma) if shared.any() else np.full(len(vertex_lengths), sigma.mean())
     return EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                      height=float(np.median(points.height)), rmse=float(np.sqrt(np.mean(residual**2))), kind=kind, sigma=sigma)
-
-
-def _drawn(places):
-    """Vertices of the smooth line through places, and the distance of each place from it."""
-    smooth = _smoothed(places)
-    return _through(smooth), np.hypot(*(smooth - places)[:, :2].T)
 
 
 def _smoothed(places):
@@ -129,9 +124,7 @@ def _chord_length(x, y):
 def _main_ends(edges, road):
     """(K, 3) end vertices of the main edges of a road, except those where two pieces touch."""
     ends = [np.round(piece.vertices[k], COORDINATE_DECIMALS) for piece in edges if piece.road == road and piece.kind == "main" for k in (0, -1)]
-    if not ends:
-        return np.empty((0, 3))
-    ends = np.array(ends)
+    ends = np.array(ends).reshape(-1, 3)
     return ends[cKDTree(ends[:, :2]).query_ball_point(ends[:, :2], EDGE.same_place_distance, return_length=True) == 1]
 
 
@@ -226,10 +219,8 @@ def _is_corner(tail, head):
     if met is None:
         return False
     # seen from its own piece a head bends the other way
-    for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
-        if bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio:
-            return True
-    return False
+    return any(bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio
+               for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)))
 
 
 def _tangents(tail, head):

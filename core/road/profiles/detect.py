@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import closing
-from functools import partial
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,37 +18,12 @@ from ..common.curb_limits import CurbSettings
 from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
-from ..common.side_curbs import Search, Section, curbs_along, grids_beside, merged_passes, steps_of_roads
+from ..common.pseudo_scanlines import widened
+from ..common.side_curbs import Search, Section, merged_passes
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
-from ..curb_returns.detect import with_curb_returns
-from ..surface.ground_grid import MeasuredGround
-from ..surface.road_look import RoadLook
+from ..surface.ground_grid import is_thin
 from ..weights import CURBS, PROFILE
-from .steps import find_averaged_steps, find_steps
-
-
-def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 ground: MeasuredGround | None = None) -> CurbPoints:
-    """Bottom corners of the curb on each side of every road, one per block, and those of corners, side streets and islands.
-
-    ground : MeasuredGround of the survey, which keeps what is measured here, or None
-
-    Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of status `bridged` lie on the line
-    across a lowered curb, and those of status `occluded` where the curb is expected and something hides it.
-    """
-    ground = ground or MeasuredGround(survey)
-    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        main, beside = main_curbs(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress), ground)
-        return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
-
-
-def main_curbs(decimation: PointDecimation, settings: CurbSettings, progress: Progress = Progress(),
-               ground: MeasuredGround | None = None) -> tuple[CurbPoints, dict[int, dict[str, OcclusionGrid]]]:
-    """The points of the roads' own curbs alone, and what was seen beside each road: its number -> side -> OcclusionGrid."""
-    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, progress)["profiles"]
-    points = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground or MeasuredGround(decimation.survey)))["profiles"]
-    tell_points(points, progress)
-    return points, grids_beside(steps)
+from .steps import beside, find_averaged_steps, find_steps
 
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:
@@ -80,30 +55,47 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
+    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing)}
     # averages need every point
     if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
         profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
     for side, _, (u, s, h), lines in profiles:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
-        steps = _steps_by_noise(lines, section, settings, overgrown=limit is None)
+        steps = _steps_by_noise(lines, section, settings, limit is None, side not in full)
         steps_by_side[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
     return {side: merged_passes(steps) for side, steps in steps_by_side.items() if steps}, occlusion
 
 
-def _steps_by_noise(lines, section, settings, overgrown):
-    """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb.
+def _steps_by_noise(lines, section, settings, overgrown, thin):
+    """Steps of a section's profiles: on each profile alone, averaged with its neighbours where noise would hide a curb, or in wider ones.
 
     overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
+    thin : has even the road beside the track so few points that several profiles must be looked at together?
     """
     section_lines = lines.part(*section)
     limits = settings.limits
     noisy = section_lines.spread > CURBS.noisy_share * limits.clear_height
-    single = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
+    steps = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
+    if thin and not noisy.all():
+        steps = _with_wider_profiles(steps, lines, section, settings)
     if not noisy.any():
-        return single
+        return steps
     averaged = find_averaged_steps(lines, CURBS.low_curb_share * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
-    return CurbSteps.join([single[~noisy[single.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
+    return CurbSteps.join([steps[~noisy[steps.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
+
+
+def _with_wider_profiles(steps, lines, section, settings):
+    """Also the steps that more and more profiles together show, each where fewer of them show none."""
+    for reach in PROFILE.wider_profiles:
+        more = find_steps(widened(lines, reach, settings.layer_jump).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+                          settings.max_height, PROFILE.least_sharpness)
+        off, count = more.s - (more.profile + 0.5) * lines.width, 2 * reach + 1
+        # a face in one half of a profile alone begins or ends there
+        whole = (more.behind >= PROFILE.least_behind) & (np.abs(off) <= 0.25 * count * lines.width)
+        more = replace(more, s=more.s - off, u=more.u - more.skew * off, support=np.maximum(more.support // count, 1))[whole]
+        steps = CurbSteps.join([steps, more[~beside(more, steps)]])
+    return steps
 
 
 # The principal points of every profile as a layer: the ground on which curbs are looked for.

@@ -11,15 +11,16 @@ from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, near
 from ..weights import CURBS, PROFILE
 
 
-def find_steps(lines: PseudoScanLines, min_height: float, max_height: float) -> CurbSteps:
+def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, least_sharpness: float = -np.inf) -> CurbSteps:
     """Steps on every single profile of one side.
 
     min_height, max_height : m, of a step
+    least_sharpness : as of `measure_corners`
 
     Returns CurbSteps, sorted by profile, then outward
     """
     rows, cells = _rising_cells(lines, min_height, max_height)
-    return measure_corners(lines, rows, cells, min_height, max_height)
+    return measure_corners(lines, rows, cells, min_height, max_height, least_sharpness)
 
 
 def _rising_cells(lines, min_height, max_height):
@@ -103,14 +104,14 @@ def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: f
         # a single view averages few rings of a multi-beam scanner, each with an error of its own
         single, = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
                             np.maximum(min_height, PROFILE.single_view_sigmas * lines.spread)[:, None], max_height)
-        result = CurbSteps.join([result, single[~_beside(single, result)]])
+        result = CurbSteps.join([result, single[~beside(single, result)]])
     for steps in before_plants:
         # level ground behind is the surer sign
-        result = CurbSteps.join([result, steps[~_beside(steps, result)]])
+        result = CurbSteps.join([result, steps[~beside(steps, result)]])
     return result[np.lexsort((result.u, result.profile))]
 
 
-def _beside(steps, others):
+def beside(steps: CurbSteps, others: CurbSteps) -> np.ndarray:
     """(M,) bool: does one of the others lie within PROFILE.same_step_distance metres across in the same profile?"""
     return nearest_distance(steps.profile * 1000.0 + steps.u, others.profile * 1000.0 + others.u) < PROFILE.same_step_distance
 
@@ -152,9 +153,11 @@ def _steps_of(lines, best, min_height, max_height):
 def _averaged(lines, skew):
     """(P, C) median heights of PROFILE.averaging_length metres of road about every profile, along one direction."""
     half = max(int(round(0.5 * PROFILE.averaging_length / lines.width)), 1)
-    low = np.where(np.isnan(lines.low), np.inf, lines.low)
-    stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
-    count = np.zeros(low.shape, np.int8)
+    shifts = [int(round(skew * k * lines.width / lines.spacing)) for k in range(-half, half + 1)]
+    (rows, cells), most = lines.shape, max(map(abs, shifts))
+    low = np.pad(np.where(np.isnan(lines.low), np.inf, lines.low), ((half, half), (most, most)), constant_values=np.inf)
+    stack = [low[k:k + rows, most + shift:most + shift + cells].copy() for k, shift in enumerate(shifts)]
+    count = np.zeros(lines.shape, np.int8)
     for row in stack:
         count += row < np.inf
     return _median(stack, count, max(PROFILE.min_profile_share * len(stack), 2))
@@ -169,11 +172,11 @@ def _rises(sums, min_rise, is_level):
     gap, fit, short = (int(round(v / spacing)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length, CURBS.behind_fit_length))
     near = int(round(CURBS.steep_half_width / spacing))
     before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
-    smooth = sums.mean(-1, 1)
+    smooth = np.pad(sums.mean(-1, 1), ((0, 0), (near, near)), constant_values=np.nan)
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = behind.slope if is_level else before.slope
         height = behind.level - before.level
-        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + slope)
+        rise = smooth[:, 2 * near:] - smooth[:, :sums.cells] - near * spacing * (before.slope + slope)
         cells = np.flatnonzero((rise > min_rise) & (before.n >= CURBS.min_filled_share * (fit + 1))
                                & (behind.n >= CURBS.min_filled_share * (short + 1))
                                & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
@@ -213,25 +216,3 @@ def _median(rows, count, min_count):
     for n in range(int(np.ceil(min_count)), len(rows) + 1):
         np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
     return middle
-
-
-def _moved(values, k):
-    """values[:, c + k] at every cell c."""
-    out = np.full(values.shape, np.nan)
-    target, source = _overlap(values.shape[1], k)
-    out[:, target] = values[:, source]
-    return out
-
-
-def _shifted(values, rows, cells):
-    """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
-    out = np.full(values.shape, np.inf)
-    target, source = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
-    out[target] = values[source]
-    return out
-
-
-def _overlap(size, by):
-    """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
-    by = max(-size, min(by, size))
-    return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))

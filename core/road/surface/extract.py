@@ -7,7 +7,7 @@ and between the limits of the road belong to its surface.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,7 +27,7 @@ from ..edges.road_edges import RoadEdges
 from ..weights import SURFACE
 from .ground_change import follow_road, smooth_road
 from .ground_grid import GroundCells, MeasuredGround, windows_of
-from .pavement_edge import Carriageway, edge_offsets, grown_limit, rows_with_edge
+from .pavement_edge import Carriageway, edge_offsets, grown_limit
 from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines, outlines, without_overlaps
 
@@ -66,7 +66,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     Raises RoadExtractionError if no road surface is found.
     """
     road_points = RoadPoints.of_survey(survey)
-    stretches, margins, cubes, carriageway_of_road = [], Margins(), [], {}
+    stretches, thin, cubes, carriageway_of_road = [], [], [], {}
     for road, carriageway in carriageways(survey, edges, settings, progress.part(0.0, 0.5), ground):
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
@@ -76,13 +76,13 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     per_row = _take_points(survey, carriageway_of_road, road_points, counted, cubes, progress.part(0.5, 1.0))
     for road, carriageway in carriageway_of_road.items():
         stretches += outlines(survey.frame, road, carriageway, per_row[road])
-        margins.add(road, carriageway, *(rows_with_edge(edges, road, carriageway.cells.stations, curb) for curb in (True, False)))
+        thin += thin_margins(road, carriageway)
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
     if counted:
         road_points.density = tuple(cube_density(part) for part in zip(*cubes))
-    surface = SurfaceOutlines.of_rows(without_overlaps(survey.frame, stretches), survey.crs, said_of_thin(margins.unknown))
+    surface = SurfaceOutlines.of_rows(without_overlaps(survey.frame, stretches), survey.crs, said_of_thin(thin))
     if surface.thin:
         progress.warn(surface.thin)
     progress.info(f"Road surface: {len(road_points):,} points, {surface.area.sum():.0f} m², "
@@ -107,7 +107,7 @@ def carriageways(survey: Survey, edges: RoadEdges | None, settings: SurfaceSetti
         profiled = missing.reshape(-1, SURFACE.window_rows).any(axis=1).tolist()
         beside[road] = windows, profiled, stations, measured
         wanted += [(road, row, want) for row, want in zip(windows, profiled)]
-    in_step([ground.measured(wanted)], survey.executor.passing(), progress.part(0.0, SURFACE.measured_progress))
+    in_step([ground.measured(wanted)], survey.executor, progress.part(0.0, SURFACE.measured_progress))
     for k, (road, of_road) in enumerate(beside.items(), start=1):
         yield road, _carriageway(survey, road, settings, ground, *of_road)
         progress.report(SURFACE.measured_progress + (1.0 - SURFACE.measured_progress) * k / len(beside))
@@ -161,7 +161,7 @@ def _take_points(survey, carriageways, road_points, counted, cubes, progress):
     `carriageways` : {road: Carriageway}
     """
     per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
-    executor, length = survey.executor.passing(), survey.store.section_length
+    executor, length = survey.executor, survey.store.section_length
     phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
     items = [(stretch, surface_about(carriageways[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(carriageways))]
@@ -211,11 +211,7 @@ def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:
     for other_road in frame.roads:
         if other_road.number == road:
             continue
-        s, d = frame.road(road).locate(*other_road.to_map(np.arange(0.0, other_road.length, cells.column_size), 0.0))
-        located = np.isfinite(s)
-        row = np.floor(s[located] / cells.row_size).astype(np.int64) - cells.first_row
-        column = np.floor(d[located] / cells.column_size).astype(np.int64) - cells.first_column
-        inside = (row >= 0) & (row < driven.shape[0]) & (column >= 0) & (column < driven.shape[1])
+        row, column, inside = cells.at(*frame.road(road).locate(*other_road.to_map(np.arange(0.0, other_road.length, cells.column_size), 0.0)))
         driven[row[inside], column[inside]] = True
     return driven
 
@@ -295,63 +291,29 @@ def _level_flanks(street, first, height, limit, offsets):
     return share * sum(map(len, level)) * SURFACE.column_width if share <= 0.5 else np.inf
 
 
-# Where no curb was found and the points lie too far apart to say that there is none.
+# Where no edge was drawn and the points lie too far apart to say that there is no curb.
 
 
 class ThinMargin(NamedTuple):
-    """A stretch of one side of a road without a curb."""
+    """A stretch of one side of a road without an edge."""
 
     road: int   # road, side: number of the road; left or right
     side: str
     start: float   # start, end: stations, m
     end: float
     density: float   # points per m² there
-    pavement: bool = False   # whether an edge of the pavement was drawn there
 
 
-@dataclass
-class Margins:
-    """What the margins of the roads of a survey show of curbs."""
-
-    thin: list[ThinMargin] = field(default_factory=list)   # stretches that no curb bounds and that hold fewer points than curbs need
-    curb: float = 0.0   # curb, bare: m of margins along a curb, and without one though the points are enough
-    bare: float = 0.0
-
-    def add(self, road: int, carriageway: Carriageway, curbs: dict[str, np.ndarray], pavement: dict[str, np.ndarray]) -> None:
-        """Add those of a road.
-
-        carriageway : Carriageway, its limits are taken as they are
-        curbs, pavement : side to (R,) bool, the rows beside which a curb, or an edge of the pavement, was drawn
-        """
-        cells = carriageway.cells
-        length = SURFACE.stretch_rows * cells.row_size
-        for side, sign, limit in (("left", 1.0, carriageway.left), ("right", -1.0, carriageway.right)):
-            density = _densities(cells, carriageway.ground, sign, np.where(curbs[side], np.nan, limit))
-            self.curb += float(curbs[side].sum()) * cells.row_size
-            self.bare += float((density >= SURFACE.min_curb_density).sum()) * length
-            paved = _mostly(pavement[side])
-            # 0 where it is not thin, 1 where it is, 2 where it is and the pavement was seen to end
-            state = np.r_[0, np.where(density < SURFACE.min_curb_density, 1 + paved, 0), 0]
-            turns = np.flatnonzero(np.diff(state))
-            for first, after in zip(turns[:-1], turns[1:]):
-                if state[first + 1]:
-                    begin, end = (cells.first_row * cells.row_size + k * length for k in (first, after))
-                    self.thin.append(ThinMargin(road, side, begin, end, float(np.median(density[first:after])), bool(state[first + 1] == 2)))
-
-    @property
-    def unknown(self) -> list[ThinMargin]:
-        """Those thin stretches where there may be a curb.
-
-        On a survey that has hardly a curb where one could be seen, as on a motorway, what ends the pavement elsewhere is none either.
-        """
-        none = self.bare >= SURFACE.shortest_seen and self.curb <= SURFACE.few_curbs * (self.curb + self.bare)
-        return [margin for margin in self.thin if not (none and margin.pavement)]
-
-
-def _mostly(rows):
-    """(K,) bool, whether most rows of stretches of SURFACE.stretch_rows are true."""
-    first = np.arange(0, len(rows), SURFACE.stretch_rows)
-    return 2 * np.add.reduceat(rows.astype(int), first) >= np.diff(np.r_[first, len(rows)]) if len(rows) else np.zeros(0, bool)
+def thin_margins(road: int, carriageway: Carriageway) -> list[ThinMargin]:
+    """The stretches of a road beside which no edge was found and that hold fewer points than curbs need."""
+    cells, result = carriageway.cells, []
+    start, length = cells.first_row * cells.row_size, SURFACE.stretch_rows * cells.row_size
+    for side, sign, limit, bounded in (("left", 1.0, carriageway.left, carriageway.left_bounded),
+                                       ("right", -1.0, carriageway.right, carriageway.right_bounded)):
+        density = _densities(cells, carriageway.ground, sign, np.where(bounded, np.nan, limit))
+        result += [ThinMargin(road, side, start + a * length, start + b * length, float(np.median(density[a:b])))
+                   for a, b in mask_runs(density < SURFACE.min_curb_density)]
+    return result
 
 
 def _densities(cells: GroundCells, ground: np.ndarray, sign: float, limit: np.ndarray) -> np.ndarray:

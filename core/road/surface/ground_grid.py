@@ -7,22 +7,25 @@ Parked cars, branches and signs lie above the lowest layer. The cells are the in
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import compress, islice
 from typing import Any
 
 import numpy as np
 from scipy.linalg import solveh_banded
+from scipy.ndimage import uniform_filter1d
 
 from ...common.arrays import order_by
 from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
 from ...survey.open_survey import Survey
-from ...survey.store.array_file import ArrayFile
+from ...survey.store.array_file import ArrayPlace, SharedArrays
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.weights import FRAME
+from ..common.pseudo_scanlines import lowest_layers
 from ..common.sides import ahead_of_vehicle
-from ..weights import SURFACE
+from ..weights import CURBS, SURFACE
 
 GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples, modulo 2^32, are evenly distributed (Knuth, TAOCP 3, 6.4)
 
@@ -79,6 +82,12 @@ class GroundCells:
         """(C,) m, offsets of the middles of the columns."""
         return (self.first_column + np.arange(self.height.shape[1]) + 0.5) * self.column_size
 
+    def at(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows and columns at stations and offsets, m, 0 beyond the cells; and whether they lie within. All of the shape of `s` with `d`."""
+        row, column = np.floor(s / self.row_size) - self.first_row, np.floor(d / self.column_size) - self.first_column
+        inside = (row >= 0) & (row < self.height.shape[0]) & (column >= 0) & (column < self.height.shape[1])   # NaN is not inside
+        return *(np.where(inside, number, 0).astype(np.int64) for number in (row, column)), inside
+
 
 def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     """Median along an axis without the NaN; NaN where all values are NaN.
@@ -95,6 +104,15 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     low = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, axis)
     high = np.take_along_axis(ordered, count // 2 * (count > 0) - (count // 2 >= ordered.shape[axis]), axis)
     return np.squeeze(0.5 * (low + high), axis)
+
+
+def is_thin(count: np.ndarray, row_size: float, column_size: float) -> bool:
+    """Do even the densest CURBS.thin_width metres across, as beside the track, hold few points in most of the rows that hold any?
+
+    count : (R, C) points of cells that are `row_size` m along and `column_size` m across the road
+    """
+    rows = uniform_filter1d(count[count.any(axis=1)].astype(float), round(CURBS.thin_width / column_size), axis=1, mode="constant")
+    return not len(rows) or np.quantile(rows, 0.75, axis=0).max() < CURBS.thin_density * row_size * column_size
 
 
 def median_about(values: np.ndarray, reach: int) -> np.ndarray:
@@ -126,7 +144,9 @@ def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callab
     z = points.records["z"].take(index)
     order = order_by(z, cell)
     index, cell, z = index[order], cell[order], z[order] * COORDINATE_SCALE
-    low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
+    ground, first, size = lowest_layers(cell, z, SURFACE.ground_layer_jump, SURFACE.min_layer_share, SURFACE.min_layer_points)
+    # a wall is one layer up to its top
+    low = np.flatnonzero(ground)[z[ground] - np.repeat(z[first], size) < SURFACE.ground_layer_depth]
     index, owner, z = index[low], cell[low].astype(np.intp), z[low]
     count = np.bincount(owner, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)
@@ -175,22 +195,6 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         indices.append(selected)
     indices = np.concatenate(indices)
     return indices, cell.take(indices)
-
-
-def _in_lowest_layer(cell, z, total):
-    """Mask of the points in the lowest sufficiently large layer of their cell; points are sorted by cell and height."""
-    if not len(cell):
-        return np.zeros(0, bool)
-    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > SURFACE.ground_layer_jump)]
-    layer = np.cumsum(begins) - 1
-    size = np.bincount(layer)
-    of_cell = cell[begins]
-    solid = size >= np.maximum(SURFACE.min_layer_points, SURFACE.min_layer_share * total[of_cell])
-    layer_of_cell = np.full(len(total), -1)
-    numbers = np.flatnonzero(solid)[::-1]
-    layer_of_cell[of_cell[numbers]] = numbers
-    lowest = z[begins]
-    return (layer_of_cell[cell] == layer) & (z - lowest[layer] < SURFACE.ground_layer_depth)
 
 
 def _views(points):
@@ -331,13 +335,13 @@ class MeasuredGround:
 
     def __init__(self, survey: Survey):
         self.survey = survey
-        self._file: ArrayFile | None = None
-        self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
+        self._arrays: SharedArrays | None = None
+        self._kept: tuple[dict[tuple[int, int], ArrayPlace], ...] = {}, {}   # of cells and of profiles, by road and first row
         self.followed: dict[int, Any] = {}   # by road: the height of the road in its cells as it was followed, and smoothed; None where there is none
 
     def cells(self, road: int) -> GroundCells:
         """The GroundCells of a whole road; those of all roads are measured together."""
-        in_step([self.measured_all(False)], self.survey.executor.passing())
+        in_step([self.measured_all(False)], self.survey.executor)
         rows = windows_of(self.survey, road)
         return self.windows(road, rows, [False] * len(rows))[0]
 
@@ -351,20 +355,16 @@ class MeasuredGround:
             cells : GroundCells of all windows
             profiles : SurfaceProfiles of the windows where they are wanted; None where they are wanted nowhere
         """
-        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor.passing())
+        in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor)
         half = _ground_columns(SURFACE.column_width)
-        cells = np.empty((len(CELL_NAMES), SURFACE.window_rows * len(rows), 2 * half), np.float32)
-        for number, row in enumerate(rows):
-            self._read(0, road, row, cells[:, SURFACE.window_rows * number:SURFACE.window_rows * (number + 1)])
+        cells = self._kept_of(0, road, rows, (len(CELL_NAMES), SURFACE.window_rows, 2 * half))
         values = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
         ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **values)
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
         half = _ground_columns(SURFACE.profile_column)
-        profiles = np.empty((len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW * len(wanted), 2 * half), np.float32)
-        for number, row in enumerate(wanted):
-            self._read(1, road, row, profiles[:, PROFILES_PER_WINDOW * number:PROFILES_PER_WINDOW * (number + 1)])
+        profiles = self._kept_of(1, road, wanted, (len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW, 2 * half))
         first = np.array(wanted)[:, None] // round(SURFACE.profile_row / SURFACE.row_length) + np.arange(PROFILES_PER_WINDOW)
         return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
                                        *profiles)
@@ -378,46 +378,58 @@ class MeasuredGround:
         kept_cells, kept_profiles = self._kept
         windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
         windows = [window for window in windows if any(window[2:])]
-        phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
+        self._arrays = self._arrays or SharedArrays(self.survey.executor.folder)
+        phase = Phase(ground_of_windows, self.survey, (self._arrays,), lambda item: self.survey.stretch(
             item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
-        file = self._file = self._file or ArrayFile()
-        # each goes to the file as it comes
-        places = yield Asked(phase, windows, 1.0, lambda parts: [
-            [None if values is None else file.put([values], values.nbytes) for values in parts]])
-        for places_of_window, (road, row, *_) in zip(places, windows):
-            for kept, place in zip(self._kept, places_of_window):
-                if place is not None:
-                    kept[road, row] = place
+        for places, (road, row, *measured) in zip((yield Asked(phase, windows, 1.0)), windows):
+            for kept, place in zip(compress(self._kept, measured), places):
+                kept[road, row] = place
 
-    def _read(self, kind, road, row, out):
-        """Fill an array with what is kept of a window: 0 its cells, 1 its profiles."""
-        out[:] = self._file.get(self._kept[kind][road, row], out.size, out.dtype).reshape(out.shape)
+    def _kept_of(self, kind, road, rows, shape):
+        """What is kept of windows, arrays of one shape one after the other: 0 their cells, 1 their profiles."""
+        return np.concatenate([self._arrays.get(self._kept[kind][road, row], shape) for row in rows], axis=1)
 
 
-def ground_of_windows(survey: Survey, windows: Sequence[Wanted]) -> list[tuple[np.ndarray | None, np.ndarray | None]]:
-    """The phase that measures the ground.
+def ground_of_windows(survey: Survey, windows: Sequence[Wanted], arrays: SharedArrays) -> list[list[ArrayPlace]]:
+    """The phase that measures the ground and writes it.
 
     windows : what is wanted of each window
 
     Returns
-        for each window, None where it is not wanted:
+        for each window where those that are wanted lie of:
         cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
         profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
-    result = []
+    measured = []
     for road, row, with_cells, with_profiles in windows:
         height = partial(survey.road_height, road)
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
-        cells, profiles = _ground_cells(points, row, SURFACE.window_rows, height) if with_cells else None, None
+        if with_cells:
+            cells = _ground_cells(points, row, SURFACE.window_rows, height)
+            measured.append(np.array([getattr(cells, name) for name in CELL_NAMES], np.float32))
         if with_profiles:
-            profiles = _ground_cells(points, int(round(row * SURFACE.row_length / SURFACE.profile_row)), PROFILES_PER_WINDOW, height,
-                                     SURFACE.profile_row, SURFACE.profile_column,
-                                     lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead)
-            profiles.height -= height(profiles.stations)[:, None]
-        result.append((_stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)))
-    return result
+            profiles = _profiles_of_window(survey, points, road, row)
+            measured.append(np.array([getattr(profiles, name) for name in SurfaceProfiles.NAMES], np.float32))
+    places = iter(arrays.put(measured))
+    return [[*islice(places, with_cells + with_profiles)] for _, _, with_cells, with_profiles in windows]
 
 
-def _stacked(part, names):
-    """Attributes of a part as one array; None where there is none."""
-    return None if part is None else np.array([getattr(part, name) for name in names], np.float32)
+def _profiles_of_window(survey, points, road, row):
+    """The profiles of a window; where it and the road about it have few points, it is measured as one profile, which stands for each."""
+    first, height, about = round(row * SURFACE.row_length / SURFACE.profile_row), partial(survey.road_height, road), SURFACE.rows_about_thin
+
+    def measured(points, first, rows, length):
+        result = _ground_cells(points, first, rows, height, length, SURFACE.profile_column,
+                               lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead)
+        result.height -= height(result.stations)[:, None]
+        return result, is_thin(result.count, length, SURFACE.profile_column)
+
+    single, thin = measured(points, first, PROFILES_PER_WINDOW, SURFACE.profile_row)
+    # a road has few points where it ends, too
+    start, rows = first - about, PROFILES_PER_WINDOW + 2 * about
+    if not thin or not measured(survey.window(road, start * SURFACE.profile_row, (start + rows) * SURFACE.profile_row), start, rows,
+                                SURFACE.profile_row)[1]:
+        return single
+    joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW)
+    joined.count /= PROFILES_PER_WINDOW
+    return replace(joined, **{name: np.repeat(getattr(joined, name), PROFILES_PER_WINDOW, axis=0) for name in SurfaceProfiles.NAMES})

@@ -150,16 +150,6 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     return result
 
 
-def rows_with_edge(edges: RoadEdges | None, road: int, stations: np.ndarray, curb: bool) -> dict[str, np.ndarray]:
-    """Side (left, right) to (N,) bool, stations (ascending, m) beside which an edge was drawn at a curb, or one of the pavement without a curb."""
-    result = {}
-    for side in ("left", "right"):
-        result[side] = np.zeros(len(stations), bool)
-        for s, _, _ in () if edges is None else _lines_of(edges, road, side, edges.of_curb == curb):
-            result[side][stretch_of(stations, s[0], s[-1])] = True
-    return result
-
-
 def _lines_of(edges, road, side, wanted):
     """(stations, offsets, status) of those main edges of one side that are wanted, by station."""
     course = edges.course

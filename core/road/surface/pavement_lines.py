@@ -73,31 +73,20 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
         agreeing = uniform_filter1d(shown.astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1, mode="constant") > 0.5
         places = np.array(frame.to_map(road, stations, grown.offset))
 
-        def lines_of(rows):
+        rows, crossing, lines = free, free, []
+        while crossing.any():
+            check_cancelled()
             likely = rows & grown.likely
-            return _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden, grown.offset, places, max_gap)
-
-        lines = _clear_of_curbs(lines_of, lambda runs: _drawn(frame, road, side, carriageway, grown, runs), free, stations, curb_lines)
+            runs = _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden, grown.offset, places, max_gap)
+            lines = [_drawn(frame, road, side, carriageway, grown, run) for run in runs]
+            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
+            crossings = np.concatenate([np.empty(0), *(_crossings(piece, curb_lines) for pieces in lines for piece in pieces)])
+            crossing = rows & (nearest_distance(stations, crossings) <= SURFACE.agreeing_length)
+            rows = rows & ~crossing
         for pieces in lines:
             number = chain + len(result)
             result += [replace(piece, chain=number) for piece in pieces]
     return result
-
-
-def _clear_of_curbs(lines_of, drawn, rows, stations, curb_lines):
-    """The pieces of lines through those of the rows that show no edge where a line crosses a curb.
-
-    lines_of : function, (R,) bool rows -> runs of lines; drawn : function, runs -> pieces
-    """
-    while True:
-        check_cancelled()
-        lines = [drawn(runs) for runs in lines_of(rows)]
-        # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-        crossings = np.concatenate([np.empty(0), *(_crossings(piece, curb_lines) for pieces in lines for piece in pieces)])
-        crossing = rows & (nearest_distance(stations, crossings) <= SURFACE.agreeing_length)
-        if not crossing.any():
-            return lines
-        rows = rows & ~crossing
 
 
 def _crossings(piece, curb_lines):

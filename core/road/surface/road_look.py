@@ -109,10 +109,7 @@ class RoadLook:
 
     def _at(self, values, s, u):
         """Values of cells at stations and offsets, NaN beyond them, and their rows."""
-        cells = self.cells
-        row, column = np.floor(s / cells.row_size) - cells.first_row, np.floor(self.sign * u / cells.column_size) - cells.first_column
-        inside = (row >= 0) & (row < values.shape[0]) & (column >= 0) & (column < values.shape[1])   # NaN is not inside
-        row, column = (np.where(inside, number, 0).astype(np.int64) for number in (row, column))
+        row, column, inside = self.cells.at(s, self.sign * u)
         return np.where(inside, values[row, column], np.nan), row
 
 

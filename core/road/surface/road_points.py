@@ -39,18 +39,8 @@ def _squares(*points):
     size = np.int32(round(SURFACE.obstacle_square / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
-    numbers = []
-    for records in points:
-        number = np.empty(len(records), np.int32)
-        for first in range(0, len(number), SURFACE.ground_points_per_batch):
-            run = number[first:first + SURFACE.ground_points_per_batch]
-            np.floor_divide(records["s"][first:first + SURFACE.ground_points_per_batch], size, out=run)
-            run -= np.int32(low[0])
-            run *= np.int32(shape[1])
-            run += records["d"][first:first + SURFACE.ground_points_per_batch] // size
-            run -= np.int32(low[1])
-        numbers.append(number)
-    return *numbers, shape
+    return *((records["s"] // size - np.int32(low[0])) * np.int32(shape[1]) + (records["d"] // size - np.int32(low[1])) for records in points), shape
+
 
 def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: float) -> Carriageway:
     """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more.

@@ -23,7 +23,7 @@ from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
 from ..store.records import COORDINATE_SCALE, to_units
 from ..weights import ADJUST, FRAME, REGISTER
-from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, pass_offsets, sigma_of_passes
+from .register import AXES, PLAN_AXES, WINDOW_LENGTH, PassCorrections, PassOffsets, Strips, height_offset, pass_offsets, sigma_of_passes
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 
@@ -118,7 +118,7 @@ def _report_offsets(road, offsets, corrections, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    if warning := warning_of_places(road, remaining_places(offsets, corrections)):
+    for warning in filter(None, (warning_of_places(road, remaining_places(offsets, corrections)), _warning_of_rebuilt(road, offsets))):
         progress.warn(warning)
 
 
@@ -172,11 +172,7 @@ class _Moves:
 
 def replace_points(survey: Any, moves: Any, progress: Progress = Progress()) -> None:
     """Move the points of a Survey within its store; `moves` : as of `_Moves`."""
-    folder = survey.store.folder
-    before = list(folder.iterdir()) if folder else []
-    survey.put_in_order(folder, survey.executor, progress, _Moves(survey.frame, moves))
-    for file in before:
-        file.unlink()
+    survey.put_in_order(survey.store.folder, survey.executor, progress, _Moves(survey.frame, moves))
 
 
 # A drive that was laid on others goes on where it measures alone: it is moved on as where it left them, not back to where it was measured.
@@ -307,7 +303,7 @@ def _applied(pair, corrections, axis):
 
 
 def warning_of_places(road: int, places: list[tuple[float, float, float]]) -> str:
-    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, remain=True)}: lines may be doubled there. "
+    return (f"Road {road}: its passes do not lie on each other at {_named_places(places, 'up to {:.1f} cm remain')}: lines may be doubled there. "
             "Adjust the trajectories to each other, or process each drive by itself.") if places else ""
 
 
@@ -316,10 +312,17 @@ def warning_of_one_drive(road: int, places: list[tuple[float, float, float]]) ->
             "measure a control point there if these centimetres matter.") if places else ""
 
 
-def _named_places(places: list[tuple[float, float, float]], remain: bool = False) -> str:
+def _warning_of_rebuilt(road: int, offsets: list[PassOffsets]) -> str:
+    """What to tell where curbs stand elsewhere in one pass than in another, along two windows and more; "" where they do not."""
+    places = _stretches_of((station, metres) for pair in offsets for station, metres in np.broadcast(pair.stations, pair.rebuilt) if metres > 0.0)
+    places = [place for place in places if place[1] - place[0] > WINDOW_LENGTH]
+    return (f"Road {road}: its drives show other ground at {_named_places(places, 'on a strip of up to {:.0f} cm')}: the street seems to have been "
+            "rebuilt between them. Process the files of each drive by itself.") if places else ""
+
+
+def _named_places(places: list[tuple[float, float, float]], what: str = "by up to {:.1f} cm") -> str:
     named = [f"{start:.0f} to {end:.0f} m (more than {100 * REGISTER.max_offset:.0f} cm apart, too far to lay them on each other)" if np.isinf(metres)
-             else f"{start:.0f} to {end:.0f} m (up to {100 * metres:.1f} cm remain)" if remain
-             else f"{start:.0f} to {end:.0f} m (by up to {100 * metres:.1f} cm)" for start, end, metres in places[:ADJUST.most_named]]
+             else f"{start:.0f} to {end:.0f} m ({what.format(100 * metres)})" for start, end, metres in places[:ADJUST.most_named]]
     further = len(places) - len(named)
     return "; ".join([*named, f"and at {further} further places"] if further else named)
 
@@ -398,28 +401,14 @@ def _parallel(frame):
 def _height_apart(survey, pair, k):
     """m by which the second road's points lie higher in one window; NaN where too little is seen of both."""
     road, half = survey.frame.road(pair.one), REGISTER.correction_step / 2
-    sides, cells = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
+    sides, strips = np.sort(pair.apart[k] * np.array(ADJUST.share_between)), []
     for number, station in ((pair.one, pair.stations[k]), (pair.other, pair.places[k])):
         points = survey.window(number, station - 1.5 * half, station + 1.5 * half)
         between = np.flatnonzero(np.abs(np.abs(points.d) - 0.5 * abs(pair.apart[k])) < np.ptp(sides) / 2 + 1.0)
         s, d = road.locate(points.x[between], points.y[between], corridor=ADJUST.farthest_beside)
-        inside = (np.abs(s - pair.stations[k]) < half) & (d > sides[0]) & (d < sides[1])
-        cells.append(_flat_cells(s[inside] - pair.stations[k] + half, d[inside] - sides[0], points.z[between[inside]]))
-    (low_cells, low), (high_cells, high) = cells
-    _, a, b = np.intersect1d(low_cells, high_cells, return_indices=True)
-    return float(np.median(high[b] - low[a])) if len(a) >= ADJUST.min_flat_cells else np.nan
-
-
-def _flat_cells(along, across, z):
-    """Numbers of the flat cells that points lie in, rising, and their mean heights, m."""
-    if not len(z):
-        return np.empty(0, int), np.empty(0)
-    cell = (along / ADJUST.height_cell).astype(int) * 1000 + (across / ADJUST.height_cell).astype(int)
-    order = np.argsort(cell, kind="stable")
-    numbers, first = np.unique(cell[order], return_index=True)
-    z = z[order]
-    flat = np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) < ADJUST.flat_cell_range
-    return numbers[flat], (np.add.reduceat(z, first) / np.diff(np.append(first, len(z))))[flat]
+        size = round(2 * half / REGISTER.row_cell), round(np.ptp(sides) / REGISTER.lag_cell)
+        strips.append(Strips.of(d - sides[0], s - pair.stations[k] + half, points.z[between], np.zeros(len(between)), size))
+    return -height_offset(*strips, 0)
 
 
 def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:

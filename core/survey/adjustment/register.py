@@ -105,6 +105,7 @@ class PassOffsets:
     left: np.ndarray
     up: np.ndarray
     far: np.ndarray   # (K,) middles of the windows in which the offset seems to exceed `max_offset`
+    rebuilt: np.ndarray | float = 0.0   # (N,) m across of ground that lies at another height all along the window
 
     def everywhere(self, axis: str) -> np.ndarray:
         """(N,) metres along an axis, interpolated where unknown; 0 where nothing is known."""
@@ -219,6 +220,16 @@ def height_offset(one: Strips, other: Strips, lag: int) -> float:
     return float(np.median(off)) if len(off) >= REGISTER.min_shared_cells else np.nan
 
 
+def _rebuilt_width(one, other, up):
+    """m across of ground that lies at another height all along two strips, one `up` above the other, as where curbs were moved; 0 for little."""
+    off = one.heights - other.heights - up
+    known = np.count_nonzero(np.isfinite(off), axis=0)
+    low, high = REGISTER.rebuilt_heights
+    share = np.maximum(*(np.count_nonzero((way * off > low) & (way * off < high), axis=0) for way in (1, -1))) / np.maximum(known, 1)
+    metres = np.count_nonzero((share > REGISTER.rebuilt_share) & (known > len(off) / 2)) * REGISTER.lag_cell
+    return metres if metres > REGISTER.least_rebuilt else 0.0
+
+
 def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> list[PassOffsets]:
     """Offsets between the passes over a road of a Survey with times, each with the next one there.
 
@@ -278,7 +289,8 @@ def _measured_again(offsets, axis, seen, again):
     """The PassOffsets with offsets along an axis from evidence in which those along the other are taken out, where there is such evidence."""
     of_window = {pair: {row[0]: row for row in rows} for pair, rows in again.items()}
     evidence = {pair: [of_window.get(pair, {}).get(row[0], row) for row in rows] for pair, rows in seen.items()}
-    return [replace(before, **{axis: getattr(after, axis)}) for before, after in zip(offsets, _combined(evidence))]
+    return [replace(before, **{axis: getattr(after, axis)}, rebuilt=np.minimum(before.rebuilt, after.rebuilt))
+            for before, after in zip(offsets, _combined(evidence))]
 
 
 def _with_rough(pair, places):
@@ -347,7 +359,7 @@ def _seen(survey, road, windows, moves, progress):
 
 
 def _window_evidence(survey, road, number, moves, lags=LAGS):
-    """{(one, other): (correlation sums across, correlation sums along, height offset)} of a window, each pass with the next.
+    """{(one, other): (correlation sums across, correlation sums along, height offset, m rebuilt)} of a window, each pass with the next.
 
     moves : {(one, other): {window: (along, left) by which the other is moved before}}
     """
@@ -365,9 +377,10 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
     for pass_number, next_number in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((pass_number, next_number), {}).get(number)
         across, lengthwise = strips(rows[next_number], *move) if move is not None else still[next_number]
+        up = height_offset(still[pass_number][0], across, 0)
         evidence[pass_number, next_number] = (correlation_sums(still[pass_number][0], across, lags),
                                               correlation_sums(still[pass_number][1], lengthwise, lags),
-                                              height_offset(still[pass_number][0], across, 0))
+                                              up, _rebuilt_width(still[pass_number][0], across, up))
     return evidence
 
 
@@ -385,7 +398,7 @@ def _combine_windows(pair, evidence):
     total = _pool(numbers, finite.astype(float))
     up = np.where(total > 0.5, _pool(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
     stations = (numbers + 0.5) * WINDOW_LENGTH
-    return PassOffsets(*pair, stations, along, left, up, stations[far])
+    return PassOffsets(*pair, stations, along, left, up, stations[far], np.array([row[4] for row in evidence]))
 
 
 def _pool(numbers, values):
@@ -465,9 +478,12 @@ def sigma_of_passes(offsets: list[PassOffsets]) -> SigmaAlong | None:
 
 
 def _apart(pair):
-    """(N,) m across that two passes lie apart, NaN where unknown; in any direction where it is more than drift, as of another datum."""
+    """(N,) m across that two passes lie apart, NaN where unknown; in any direction where it is more than drift, as of another datum.
+
+    Where the street was rebuilt between them, what is drawn may lie anywhere on the strip that was.
+    """
     anywhere = np.linalg.norm(np.nan_to_num([pair.left, pair.along, pair.up]), axis=0)
-    return np.where(anywhere > REGISTER.most_drift, anywhere, pair.left)
+    return np.fmax(np.where(anywhere > REGISTER.most_drift, anywhere, pair.left), np.where(pair.rebuilt > 0.0, pair.rebuilt, np.nan))
 
 
 def sigma_to_record(sigma: dict[int, SigmaAlong]) -> list[Any]:

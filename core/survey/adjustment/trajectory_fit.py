@@ -9,18 +9,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
 from ..estimation.samples import SAMPLED_LAYERS
+from ..frame.road_frame import decimate_by_distance, runs_through
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
 from ..las.reader import CloudHeader
 from ..lattice.scan_lattice import rotation_spectrum, strongest_rotation
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
-from ..weights import ADJUST, FRAME, LAS, LATTICE, MIRROR, RAYS, READING, TRACK, VEHICLE
+from ..weights import ADJUST, ESTIMATE, FRAME, LAS, LATTICE, MIRROR, RAYS, READING, TRACK, VEHICLE
 
 
 @dataclass(frozen=True)
@@ -45,9 +47,15 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     for warning in shape.said:
         progress.warn(warning)
     unmoved = shape.trajectory if shape.said else trajectory
-    if not trajectory.has_time or not all(file.has_time for file in files if file.count):
+    way = shape.trajectory.x, shape.trajectory.y
+    files = [file for file in files if file.count and runs_through(file.minimum, file.maximum, *way, FRAME.corridor)]
+    if not trajectory.has_time or not files or not all(file.has_time for file in files):
         return _FittedTrajectory(unmoved, shape.sigma, False)
     sample = read_places(files, scanner_field)
+    if (far := _far_away(sample, shape.trajectory)) > ESTIMATE.farthest_median:
+        progress.warn(f"Half of the points lie more than {far:.0f} m from the trajectory; a vehicle on the road sees half within "
+                      f"{ESTIMATE.farthest_median:.0f} m. Check that cloud and trajectory are of one drive, and neither is flown nor mirrored.")
+        return _FittedTrajectory(unmoved, float(np.hypot(shape.sigma, far)), False)
     mountings = _near(scanner_mountings(sample, shape.trajectory))
     if not mountings:   # places of one scanner at a time do not show that there are several
         sample = replace(sample, scanner=sample.source)
@@ -61,6 +69,14 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         mountings = _met(scanner_mountings(sample, level))
     moved, left = _on_way(level, mountings, progress)
     return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, float(np.hypot(shape.sigma, left)), True)
+
+
+def _far_away(sample, trajectory):
+    """m from the nearest place of the trajectory, of half of the points that were measured while it was driven; 0 without any."""
+    track = np.c_[trajectory.x, trajectory.y]
+    places = sample.place[(sample.time >= trajectory.time[0]) & (sample.time <= trajectory.time[-1]), :2]
+    distance = cKDTree(track[decimate_by_distance(*track.T, FRAME.track_step)]).query(places)[0]
+    return float(np.median(distance)) if len(distance) else 0.0
 
 
 def _near(mountings):
@@ -131,9 +147,11 @@ def _jump(trajectory, times, lever, progress):
     pauses = trajectory.time[:-1][np.diff(trajectory.time) > ADJUST.max_seam]
     one_drive = np.diff(np.searchsorted(pauses, times)) == 0
     speed = np.interp(times, trajectory.time, np.hypot(*(np.gradient(axis, trajectory.time) for axis in (trajectory.x, trajectory.y))))
-    moved = np.abs(np.diff(lever, axis=0))
-    moved[:, 0] = np.maximum(moved[:, 0] - VEHICLE.largest_lag * np.abs(np.diff(speed)), 0.0)   # which a clock that lags moves along
-    metres = np.where(one_drive, np.linalg.norm(moved, axis=1), 0.0)
+    moved, faster = np.diff(lever, axis=0) * one_drive[:, None], np.diff(speed) * one_drive
+    # a clock that lags moves the scanners along, the farther the faster; of all lags the one that leaves least leaves a jump as it is
+    lags = np.clip(np.r_[0.0, moved[:, 0] / np.where(faster == 0.0, np.inf, faster)], -VEHICLE.largest_lag, VEHICLE.largest_lag)
+    moved[:, 0] -= faster * lags[np.abs(moved[:, 0] - lags[:, None] * faster).sum(axis=1).argmin()]
+    metres = np.linalg.norm(moved, axis=1)
     turned = VEHICLE.attitude_noise if np.isfinite([trajectory.roll, trajectory.pitch, trajectory.heading]).all() else VEHICLE.course_noise
     arm = np.linalg.norm(lever, axis=1)
     arm = np.maximum(arm[1:], arm[:-1])   # longer ones are those of a clock, which is told of by itself
@@ -142,7 +160,7 @@ def _jump(trajectory, times, lever, progress):
         return 0.0
     k = int(jumps[0])
     progress.warn(f"The scanners ride {metres[k]:.2g} m elsewhere beside the trajectory at {times[k + 1]:.1f} s than at {times[k]:.1f} s. Files of "
-                  "one drive seem to be in two datums: export all of them and the trajectory from one solution.")
+                  "one drive seem to be in two datums, or its angles are wrong: export all of them and the trajectory from one solution.")
     return float(metres[jumps].max())
 
 
@@ -362,8 +380,11 @@ def _rate(time, a, b, window, size):
 def _resected_places(a, b, since, window, middles, rate):
     """(W,) m of the scanner along and up its plane, (W,) bool of good windows, and m of their misfit, by a rate that is made better."""
     for _ in range(MIRROR.resection_rounds):
-        u, v, phase, misfit, in_front = resected(a, b, 2 * np.pi * rate * since, window, len(middles))
-        good = in_front >= MIRROR.min_share_in_front
+        angle = 2 * np.pi * rate * since
+        u, v, phase, misfit, in_front = resected(a, b, angle, window, len(middles))
+        # points that all lie in one direction, as at the end of a tile, do not show where they were seen from
+        one_way = np.hypot(*(np.bincount(window, part) for part in (np.cos(angle), np.sin(angle)))) / np.bincount(window)
+        good = (in_front >= MIRROR.min_share_in_front) & (one_way < VEHICLE.max_one_way)
         seconds = np.diff(middles)
         step = np.diff(phase) - 2 * np.pi * rate * seconds
         step = (step + np.pi) % (2 * np.pi) - np.pi
@@ -388,7 +409,7 @@ HALF_VEHICLE = 1.275     # source: m; no vehicle on the road is wider than 2.55 
 VEHICLE_HEIGHT = 4.0     # source: m (the same), so no scanner rides farther above or below a trajectory that is on the vehicle
 
 # Points from which places of scanners are found
-PLACES_READ = 6          # cost: places in the files that are looked at, and
+PLACES_READ = 12         # cost: places in the files that are looked at, and
 PLACE_WINDOWS = 5        # cost: windows that points are read of at a place; the first and the last of them are not whole
 PLACE_GAP = 0.5          # derived: s between windows, from which they are of another place, as PLACE_WINDOWS take less
 PLACE_POINTS = 50_000    # cost: that are read at a place, at most

@@ -368,7 +368,7 @@ def _turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
     middle = 0.5 * (samples.time[drive.start] + samples.time[drive.stop - 1])
     rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= HEAD.rate_seconds / 2)
     offset = samples.place[rows, :2] - track.at(samples.time[rows])[0][:, :2]
-    rows, offset = rows[far := np.hypot(*offset.T) > HEAD.far_from_track], offset[far]
+    rows, offset = rows[(far := np.hypot(*offset.T) > HEAD.far_from_track)], offset[far]
     kept = slice(None, None, max(len(rows) // HEAD.max_rate_samples, 1))
     if len(rows) < HEAD.min_turn_samples:
         return None

@@ -6,6 +6,7 @@ pauses, turns back, crosses itself or returns to its own track.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -40,15 +41,23 @@ def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarra
     return np.union1d(np.flatnonzero(np.r_[True, np.diff(np.floor(driven / step)) > 0]), [len(x) - 1])
 
 
+def runs_through(low: Sequence[float], high: Sequence[float], x: np.ndarray, y: np.ndarray, reach: float) -> bool:
+    """Whether a drive through (N,) positions comes within `reach` m of a box with the corners `low` and `high`."""
+    return bool(((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any())
+
+
 def _moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_radius) -> np.ndarray:
     """(M,) indices of (N,) positions at least `step` metres from the previous one, so that position noise adds no length.
 
     The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
     """
-    places, keep, count = list(zip(x.tolist(), y.tolist())), [0], len(x)
-    for row, place in enumerate(places):
-        if dist(place, places[keep[-1]]) >= step:
+    places, keep, count, row = list(zip(x.tolist(), y.tolist())), [0], len(x), 1
+    # no position lies farther from another than was driven between them, but for rounding
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
+    while (row := bisect_left(driven, driven[keep[-1]] + 0.999 * step, row)) < count:
+        if dist(places[row], places[keep[-1]]) >= step:
             keep.append(row)
+        row += 1
     if keep[-1] != count - 1:
         keep = keep[:-1] + [count - 1] if len(keep) > 1 else keep + [count - 1]
     return np.array(keep)

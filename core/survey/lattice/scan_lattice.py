@@ -50,7 +50,7 @@ def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progres
 
     rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
     """
-    return in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor.passing(), progress)[0]
+    return in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor, progress)[0]
 
 
 def lattice_of(survey: Any, rotation_frequency: float, progress: Progress) -> Work:

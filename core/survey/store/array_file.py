@@ -5,13 +5,13 @@ The operating system keeps in memory what was written and read last, once for al
 
 from __future__ import annotations
 
+import math
 import mmap
 import os
-import struct
 import tempfile
 import threading
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -21,10 +21,10 @@ from uuid import uuid4
 import numpy as np
 
 from ...common.parallel import freed_on_demand
-from ...execution.phase import checksum
+from ...execution.phase import SEAL, checksum
 from ..weights import STORE
 
-SEAL = struct.Struct("<I")   # CRC-32 of what comes before it in a finished file
+ArrayPlace = tuple[str, int]   # the name of a file and the first byte of an array there
 ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
 
 
@@ -86,7 +86,7 @@ class ArrayFile:
             raise OSError(error.errno, error.strerror, str(self.path or tempfile.gettempdir())) from error
 
     def seal(self) -> None:
-        """Fill the file up to its end and write a checksum of all bytes behind them, by which `files_are_whole` knows them again."""
+        """Fill the file up to its end and write a checksum of all bytes behind them, by which `is_sealed` knows them again."""
         self._file.truncate(self.end)
         self._file.seek(0)
         self._write(self.end, np.frombuffer(SEAL.pack(checksum(self._file, self.end)), np.uint8))
@@ -153,11 +153,36 @@ def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
         unfinished.unlink(missing_ok=True)
 
 
-def files_are_whole(folder: Path) -> bool:
-    """Whether all files of `new_file` in a folder are as they were written, which they may not be after the power failed."""
-    for path in folder.glob("points-*.bin"):
-        with open(path, "rb", buffering=0) as file:
-            end = os.fstat(file.fileno()).st_size - SEAL.size
-            if end < 0 or checksum(file, end) != SEAL.unpack(file.read(SEAL.size))[0]:
-                return False
-    return True
+class SharedArrays:
+    """Arrays that tasks write, each task those of its own at once; whoever does so, and the caller, finds them again by their places.
+
+    folder : that all of them see, in which each task makes a file; None for threads, which share a temporary file without a name
+    """
+
+    def __init__(self, folder: Path | str | None) -> None:
+        self.folder = folder and Path(folder)
+        self._file = None if folder else ArrayFile()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"folder": str(self.folder)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    def put(self, arrays: Iterable[np.ndarray]) -> list[ArrayPlace]:
+        """Write arrays; where each of them lies."""
+        if self._file is not None:
+            return [("", self._file.put([array], array.nbytes)) for array in arrays]
+        with new_file(self.folder) as (file, name):
+            return [(name, file.put([array], array.nbytes)) for array in arrays]
+
+    def get(self, place: ArrayPlace, shape: Sequence[int], dtype: Any = np.float32) -> np.ndarray:
+        """An array that was written, read-only, which stays in its file until it is used."""
+        name, first = place
+        file = opened(self.folder / name) if self._file is None else self._file
+        return file.get(first, math.prod(shape), dtype).reshape(shape)
+
+    def close(self) -> None:
+        """Release the disk space of a file without a name; what lies in a folder may be wanted again."""
+        if self._file is not None:
+            self._file.close()

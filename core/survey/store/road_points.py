@@ -38,7 +38,7 @@ class RoadPoints:
     @property
     def executor(self) -> Executor:
         """Who runs the phases that read these points."""
-        return THREADS if self.survey is None else self.survey.executor.passing()
+        return THREADS if self.survey is None else self.survey.executor
 
     def recipe(self, folder: Path) -> Recipe:
         """How other processes open the points, which must be those of a Survey."""
@@ -58,7 +58,7 @@ class RoadPoints:
     def of_survey(cls, survey: Any) -> RoadPoints:
         """An empty set for points of a survey, in its sections; the Survey lives as long as the road points and is closed with them."""
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
-        store = SectionStore(dtype, survey.store.section_length, survey.executor.passing().folder, dict(corrected=np.nan, cluster=0, spacing=0))
+        store = SectionStore(dtype, survey.store.section_length, survey.executor.folder, dict(corrected=np.nan, cluster=0, spacing=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves,
                    pass_sigma=survey.frame.pass_sigma, survey=survey)
 

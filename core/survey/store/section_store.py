@@ -303,6 +303,10 @@ class SectionStore:
             part._files = dict.fromkeys((False, True), file)
             yield part
 
+    def paths(self) -> list[Path]:
+        """The files with names in which the points lie."""
+        return sorted({part.file for section in self._sections.values() for part in section.parts if isinstance(part.file, Path)})
+
     def index(self) -> StoreIndex:
         """Where the points lie."""
         return StoreIndex.of(sorted(self._sections.items()))

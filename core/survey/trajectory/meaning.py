@@ -247,7 +247,7 @@ def _added_leap_seconds(utc, label, notes):
 def _like_time(columns, used, label):
     """A sentence for columns that increase evenly like time and are not used."""
     likely = [f"{listed([column.title or f'column {k + 1}'])} ({column.values[finite][0]:.10g} to {column.values[finite][-1]:.10g})"
-              for k, column in enumerate(columns) if k not in used and _increases_evenly(column.values[finite := np.isfinite(column.values)])
+              for k, column in enumerate(columns) if k not in used and _increases_evenly(column.values[(finite := np.isfinite(column.values))])
               and not COUNTS_OTHERS.search(column.title)]
     if not likely:
         return []

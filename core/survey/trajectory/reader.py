@@ -74,8 +74,10 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
         time = np.arange(len(x), dtype=float)
         remarks.append(f"{label} has no time; its positions are used in file order.")
     crs, (x, y, z), stated_units = lengths_in_metres(crs, (x, y, columns["z"]), stated_units, label)
-    roll, pitch, heading = _angles(columns, x, y, crs, angle_unit, remarks)
-    return Trajectory(time, x, y, z, roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks), stated_units=tuple(stated_units))
+    doubts: list[str] = []
+    roll, pitch, heading = _angles(columns, x, y, crs, angle_unit, remarks, doubts)
+    return Trajectory(time, x, y, z, roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks), stated_units=tuple(stated_units),
+                      doubts=tuple(doubts))
 
 
 def trajectory_from_rows(titles: Sequence[str], rows: Sequence[Sequence[object]], given: Mapping[str, Any], crs: str = "",
@@ -126,7 +128,7 @@ def _from_table(columns, meaning, given, defaults, crs, angle_unit, label, notes
     if "z" not in values or not np.isfinite(values["z"]).any():
         values.update(defaults)
     trajectory = trajectory_from_columns(values, crs, angle_unit, label, notes, _stated_lengths(columns, meaning.place, preamble))
-    trajectory = replace(trajectory, doubts=tuple(doubts))
+    trajectory = replace(trajectory, doubts=(*doubts, *trajectory.doubts))
     if "time" in meaning.place and not columns[meaning.place["time"]].unit.name and not columns[meaning.place["time"]].is_text:
         trajectory = _in_seconds(trajectory, label)
     return trajectory
@@ -229,8 +231,8 @@ def _check_degrees(lon, lat, unit, label):
                                   f"{_farthest(lon):.4f}°: the two are exchanged. Name the columns the other way round.")
 
 
-def _angles(columns, x, y, crs, unit, notes):
-    """roll, pitch, heading in degrees, heading clockwise from north; None where a column is missing."""
+def _angles(columns, x, y, crs, unit, notes, doubts):
+    """roll, pitch, heading in degrees, heading clockwise from north, NaN where it is not that of the drive; None where a column is missing."""
     angles = {role: columns[role] for role in ("roll", "pitch", "heading") if role in columns}
     heading = angles.get("heading", np.full(len(x), np.nan))
     x, y = rough_metres(x, y, crs)
@@ -239,8 +241,7 @@ def _angles(columns, x, y, crs, unit, notes):
     driven = heading[good][rows]
     unit = _angle_unit(angles, heading[good], driven, course, unit)
     if len(rows):
-        angles["heading"], note = _from_north(heading, np.degrees(driven) if unit == "radians" else driven, course, unit)
-        notes += note
+        angles["heading"] = _from_north(heading, np.degrees(driven) if unit == "radians" else driven, course, unit, notes, doubts)
     if angles and unit == "radians":
         notes.append("Roll, pitch and heading are in radians; they were converted to degrees.")
         angles = {role: np.degrees(values) for role, values in angles.items()}
@@ -267,15 +268,17 @@ def _likelier_unit(heading, course):
     return "degrees" if as_degrees <= as_radians else "radians"
 
 
-def _from_north(heading, in_degrees, course, unit):
-    """The heading clockwise from north, and a note where it was counted from east or contradicts the course."""
+def _from_north(heading, in_degrees, course, unit, notes, doubts):
+    """The heading clockwise from north, also where it was counted from east; NaN where it contradicts the course."""
     difference = float(np.median(angle_between(in_degrees, course)))
     if difference < 3 * TRAJECTORY.heading_tolerance:
-        return heading, []
+        return heading
     if np.median(angle_between(90.0 - in_degrees, course)) < TRAJECTORY.heading_tolerance:
-        quarter = np.pi / 2 if unit == "radians" else 90.0
-        return quarter - heading, ["The heading is counted counter-clockwise from east; it was converted to clockwise from north."]
-    return heading, [f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading."]
+        notes.append("The heading is counted counter-clockwise from east; it was converted to clockwise from north.")
+        return (np.pi / 2 if unit == "radians" else 90.0) - heading
+    doubts.append(f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading. Export the "
+                  "heading clockwise from grid north.")
+    return np.full(len(heading), np.nan)
 
 
 def _is_sbet(path):

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.parsers.expat import ExpatError, ParserCreate
+from xml.etree.ElementTree import ParseError, iterparse
 
 import numpy as np
 
@@ -396,70 +396,44 @@ def _read_track(path: Path) -> list[TableColumn]:
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
     """
-    reader = _TrackReader()
+    rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
+    whens = []
     try:
-        reader.read(path)
-    except ExpatError as problem:
+        with open(path, "rb") as file:
+            if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
+                raise ValueError("it declares entities of its own")
+        for _, element in iterparse(path):
+            name, text = _local(element), (element.text or "").strip()
+            if name in ("trkpt", "rtept", "wpt"):
+                parts = {_local(child): (child.text or "").strip() for child in element}
+                rows[name].append([element.get("lon", ""), element.get("lat", ""), parts.get("ele", ""), parts.get("time", "")])
+            elif name == "when":
+                whens.append(text)
+            elif name == "coord":
+                rows[name].append([*text.split(), "", "", ""][:4])
+            elif name == "coordinates":
+                rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
+            if name not in ("ele", "time"):
+                element.clear()
+    except ParseError as problem:
         raise RoadExtractionError(f"{path} cannot be read as XML ({problem}). Save the track again.") from problem
     except (LookupError, ValueError) as problem:
         raise RoadExtractionError(f"{path} cannot be read ({problem}). Save the track again, as UTF-8.") from problem
-    kind = next((kind for kind in KINDS_OF_POSITIONS if reader.rows[kind]), None)
+    kind = next((kind for kind in KINDS_OF_POSITIONS if rows[kind]), None)
     if kind is None:
         raise RoadExtractionError(f"{path} holds no track. A drive is a track (layer track_points): save it with its track, or choose the layer of "
                                   "positions.")
-    rows = reader.rows[kind]
-    if kind == "coord":
-        rows = [[*row[:3], time] for row, time in zip(rows, reader.whens if len(reader.whens) == len(rows) else [""] * len(rows))]
+    drive = rows[kind]
+    if kind == "coord" and len(whens) == len(drive):
+        drive = [[*row[:3], time] for row, time in zip(drive, whens)]
     columns = [TableColumn.of(title, texts, Unit(unit)) for (title, unit), texts in zip(
-        (("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")), zip(*rows))]
+        (("longitude", "degrees"), ("latitude", "degrees"), ("height", "metres"), ("UTC", "")), zip(*drive))]
     return columns if columns[3].first else columns[:3]
 
 
-class _TrackReader:
-    """Points of a file, [longitude, latitude, height, time] as texts, by the element that they stand in."""
-
-    def __init__(self):
-        self.rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
-        self.whens: list[str] = []
-        self._text, self._point = "", None
-        self._parser = ParserCreate()
-        self._parser.StartElementHandler, self._parser.EndElementHandler = self._start, self._end
-        self._parser.CharacterDataHandler = self._characters
-        self._parser.EntityDeclHandler = self._refuse
-
-    def read(self, path):
-        with open(path, "rb") as file:
-            while chunk := file.read(TRAJECTORY.chunk):
-                self._parser.Parse(chunk)
-            self._parser.Parse(b"", True)
-
-    def _refuse(self, *declared):
-        raise ValueError("it declares entities of its own")
-
-    def _start(self, name, attributes):
-        name = name.rpartition(":")[2]
-        self._text = ""
-        if name in ("trkpt", "rtept", "wpt"):
-            self._point = [attributes.get("lon", ""), attributes.get("lat", ""), "", ""]
-            self.rows[name].append(self._point)
-
-    def _characters(self, text):
-        # the coordinates of a line in KML are one text
-        self._text = self._text + text if len(self._text) < TRAJECTORY.most_text or self._point is None else self._text
-
-    def _end(self, name):
-        name, text = name.rpartition(":")[2], self._text.strip()
-        if self._point is not None and name in ("ele", "time"):
-            self._point[2 if name == "ele" else 3] = text
-        elif name in ("trkpt", "rtept", "wpt"):
-            self._point = None
-        elif name == "when":
-            self.whens.append(text)
-        elif name == "coord":
-            self.rows["coord"].append([*text.split(), "", "", ""][:4])
-        elif name == "coordinates":
-            self.rows["coordinates" if len(text.split()) > 1 else "point"] += [[*tuple_.split(","), "", "", ""][:3] + [""] for tuple_ in text.split()]
-        self._text = ""
+def _local(element):
+    """The name of an element without its namespace."""
+    return element.tag.rpartition("}")[2]
 
 
 def is_record(path: Path) -> bool:

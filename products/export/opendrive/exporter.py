@@ -19,6 +19,7 @@ from .objects import LANE_ID, add_objects
 from .reference_line import side_by_side
 from .road_shape import RoadShape, add_heights, add_lanes, centre_of, fit_borders, heights_above_road, shape_steps
 from .strips import Cell, Slice, connector_slices, cut_into_cells, directions_where_met, end_to_end, mark_junctions, slices_of, strips_of
+from .xodr import PATTERN_OF_MARK
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 MIDDLES_SHARE = 0.5       # of the tolerance by which borders are moved to their driving lines
@@ -29,8 +30,7 @@ LONGEST_WAY = 10.0        # m at most
 CURB_WIDTH = 0.15         # m, of a curb stone seen from above
 TYPE_OF_LANE = {"driving": "driving", "connector": "driving", "shoulder": "shoulder", "parking": "parking", "bicycle": "biking",
                 "hatched": "restricted", "median": "median"}
-MARK_OF_PATTERN = {"solid": "solid", "dashed": "broken", "double-solid": "solid solid", "double": "solid solid", "double-dashed": "broken broken",
-                   "solid-dashed": "solid broken", "dashed-solid": "broken solid"}
+MARK_OF_PATTERN = {pattern: mark for mark, pattern in reversed(PATTERN_OF_MARK.items())} | {"double": "solid solid"}
 USUAL_DASH = (3.0, 6.0)   # m of a dash and a gap where the country is not known, as on German roads out of town
 
 

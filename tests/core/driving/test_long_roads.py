@@ -10,8 +10,8 @@ from lanewright.core.driving.lane_areas import follow
 from lanewright.core.driving.lane_track import LaneTrack, connect
 from lanewright.core.driving.lanes import laid_out
 from lanewright.core.execution.in_step import in_step
+from lanewright.core.execution.keep import Keep
 from lanewright.core.execution.phase import Threads
-from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
 from lanewright.core.markings.cross_section.estimate import estimates_of_roads
 from lanewright.core.markings.cross_section.evidence import driven_offsets, evidence_of
@@ -97,7 +97,7 @@ def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
             counts.append(len(items))
             return super().run(phase, items, *args, **settings)
 
-    executor, counts = RememberedResults(Counting(1)), []
+    executor, counts = Keep(Counting(1)), []
     for end in (1090.0, 1140.0):
         estimate, = estimates_of_roads([road(end)], 3.5, EstimateWeights(), executor)
         assert np.isfinite(estimate.total)

@@ -19,8 +19,9 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster, folder_executor, tasks
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster, check_address, client_of, is_loopback
+from lanewright.core.execution.keep import Keep, work_folder
 from lanewright.core.execution.phase import Phase, Threads, read_plain, write_plain
-from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
+from lanewright.core.execution.tasks import code_digest
 from lanewright.core.survey.frame.road_frame import build_frame
 
 
@@ -159,13 +160,13 @@ def test_successive_sections_go_to_a_worker_together_and_every_worker_has_rounds
 
 
 def test_where_workers_end_only_the_section_that_they_end_at_is_computed_again(by_threads, few_rounds, monkeypatch):
-    computed, write = [], tasks.write_plain
+    computed, write = [], tasks.write_results
 
     def counted(path, *others):
         computed.append(path)
         write(path, *others)
 
-    monkeypatch.setattr(tasks, "write_plain", counted)
+    monkeypatch.setattr(tasks, "write_results", counted)
     client = StandIn(lambda section: section[-2] <= 100 < section[-1] and not is_half(section, client.items))
     assert numbers_of(boundaries(Cluster(client))) == by_threads
     assert len(computed) == len(set(computed)), "what was finished before a worker ended stays"
@@ -251,10 +252,10 @@ def test_the_folder_of_a_caller_that_is_gone_is_removed_and_that_of_another_stay
 
 
 def test_results_go_straight_to_the_work_folder(by_threads, tmp_path):
-    work = WorkFolder(str(tmp_path / "work"))
-    executor = KeptResults(Cluster(StandIn(), work.path), work)
+    work = work_folder(str(tmp_path / "work"))
+    executor = Keep(Cluster(StandIn(), work), work)
     assert numbers_of(boundaries(executor)) == by_threads
-    assert list(work.path.glob("phase-*/*.plain")) and not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
+    assert list(work.glob("kept-*.plain")) and not list(work.glob("run-*")) and not list(work.rglob("*.part*"))
 
 
 @pytest.mark.parametrize("address, own", [

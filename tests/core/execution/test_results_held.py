@@ -4,8 +4,8 @@ import weakref
 from collections import Counter
 
 import pytest
+from lanewright.core.execution.keep import Keep, work_folder
 from lanewright.core.execution.phase import NoSource, Phase, Threads
-from lanewright.core.execution.work_folder import KeptResults, WorkFolder
 from lanewright.core.survey.las.samples import TimeSlots
 
 ITEMS = 60
@@ -34,9 +34,9 @@ class Held:
 def test_a_road_of_any_length_has_few_results_of_a_phase_in_memory(tmp_path, monkeypatch, kept):
     held, executor = Held(), Threads(THREADS)
     # only a named function has a name in a work folder
-    monkeypatch.setattr("lanewright.core.execution.work_folder.name_of", lambda function: "made:here")
+    monkeypatch.setattr("lanewright.core.execution.keep.name_of", lambda function: "made:here")
     if kept:
-        executor = KeptResults(executor, WorkFolder(str(tmp_path / "work")))
+        executor = Keep(executor, work_folder(str(tmp_path / "work")))
     strides = [found.stride for found in executor.run(Phase(held.result, NoSource()), range(ITEMS))]
     assert strides == list(range(1, ITEMS + 1))
     # one for each thread, one more ahead, the one that is handed on and the one before it

@@ -9,10 +9,10 @@ from executed_stages import functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.keep import KeptRun
 from lanewright.core.execution.phase import Threads
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.pipeline import road_map as chain
-from lanewright.core.pipeline.kept_run import KeptRun
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.open_survey import SurveySettings
 from lanewright.core.survey.store.array_file import ArrayFile
@@ -33,7 +33,7 @@ def street(made_survey):
 @pytest.fixture
 def kept():
     kept = KeptRun()
-    kept.begin()
+    kept.wanted = True
     yield kept
     kept.end()
 

@@ -7,9 +7,9 @@ import pytest
 from executed_stages import PHASES, found_by, functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution.keep import work_folder
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.tasks import find_interpreter
-from lanewright.core.execution.work_folder import WorkFolder
 
 pytestmark = pytest.mark.slow
 
@@ -58,14 +58,23 @@ def by_threads(sample):
     return found_by(sample)
 
 
-def test_worker_processes_killed_or_not_find_what_threads_find_and_a_work_folder_keeps_nothing_of_these_stages(sample, by_threads, tmp_path):
-    """Then one is killed in one phase after another: it is replaced, and nothing is lost."""
-    work, kept = WorkFolder(str(tmp_path / "work")), []
+def test_worker_processes_killed_or_not_find_what_threads_find(sample, by_threads):
+    """One is killed in one phase after another: it is replaced, and nothing is lost."""
     for executor in (Noting(2), Noting(1, KILLED_IN)):
-        assert found_by(sample, executor, work) == by_threads
+        assert found_by(sample, executor) == by_threads
         assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.killed_in and not executor.folder.exists()
-        kept.append(sorted(path.name for path in work.path.rglob("*") if path.is_file()))
-    assert kept[0] == kept[1] and not any("part" in name for name in kept[0])
+
+
+def test_of_no_stage_is_anything_done_again_in_a_work_folder(sample, by_threads, tmp_path):
+    work = work_folder(str(tmp_path / "work"))
+    assert found_by(sample, Noting(2), work) == by_threads
+    kept, again = files_of(work), Noting(2)
+    assert found_by(sample, again, work) == by_threads
+    assert not any(again.tasks.values()) and files_of(work) == kept and not any("part" in name for name in kept)
+
+
+def files_of(work):
+    return {path.name: path.stat().st_size for path in work.rglob("*") if path.is_file()}
 
 
 def test_cancel_while_paint_is_extracted_ends_the_workers_and_leaves_nothing(sample):

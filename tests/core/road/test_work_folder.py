@@ -7,7 +7,7 @@ import pytest
 from executed_boundaries import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import work_folder
+from lanewright.core.execution import keep, phase
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -72,15 +72,15 @@ def test_a_second_run_in_a_folder_that_was_moved_reads_nothing_again_and_gives_t
 def test_a_cancelled_run_goes_on_where_it_was(sample, tmp_path, without):
     class Stop(Heard):
         def report(self, fraction):
-            if list(tmp_path.glob("work/phase-*/*.plain")):
+            if len(list(tmp_path.glob("work/kept-*.plain"))) > 5:
                 raise Cancelled
 
     with pytest.raises(Cancelled):
         boundaries(sample, tmp_path / "work", progress=Stop())
-    done = len(list(tmp_path.glob("work/phase-*/*.plain")))
+    done = {path: path.stat().st_ino for path in tmp_path.glob("work/kept-*.plain")}
     heard = Heard()
     assert numbers_of(boundaries(sample, tmp_path / "work", progress=heard)) == without
-    assert done >= 1 and heard.says(f"{done} of ")
+    assert len(done) > 5 and all(path.stat().st_ino == file for path, file in done.items()) and heard.says("finished by an earlier run")
 
 
 def test_other_curb_settings_find_curbs_anew_from_points_that_were_read(sample, work, monkeypatch):
@@ -93,18 +93,20 @@ def test_other_curb_settings_find_curbs_anew_from_points_that_were_read(sample, 
 def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_anew(sample, work, tmp_path, monkeypatch):
     made, path = sample
     cloud = tmp_path / "survey.laz"
-    for change in ("file", "file again", "settings", "code"):
+    for change in ("file", "file again", "settings", "code", "packages"):
         settings, heard = SurveySettings(corridor=20.0) if change == "settings" else SurveySettings(), Heard()
         if "file" in change:
             shutil.copyfile(path, cloud)
         if change == "code":
-            monkeypatch.setattr(opening, "code_digest", lambda: "another")
+            monkeypatch.setattr(keep, "code_digest", lambda: "another")
+        if change == "packages":
+            monkeypatch.setattr(keep, "versions", lambda: {"python": "3.11", "numpy": "9.9"})
         boundaries(sample, work, progress=heard, cloud=cloud, settings=settings)
         assert not heard.says("read by an earlier run"), change
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a full disk is made of /dev/full")
-@pytest.mark.parametrize("cut, left", [("*.json", 0), ("survey-*/survey.plain", 100), ("survey-*/points*", 100), ("phase-*/*.plain", 0)])
+@pytest.mark.parametrize("cut, left", [("kept-*.plain", 0), ("kept-*.plain", 100), ("survey/points*", 100), ("read/points*", 0)])
 def test_what_a_power_failure_has_cut_off_is_made_again(sample, work, without, monkeypatch, cut, left):
     for path in sorted(work.glob(cut)):
         os.truncate(path, left)
@@ -122,9 +124,9 @@ def test_a_folder_that_cannot_be_used_is_named_before_anything_is_read(sample, t
 
 
 def test_a_disk_that_fills_up_is_named(sample, tmp_path, monkeypatch):
-    def full(path, value):
+    def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(work_folder, "write_plain", full)
+    monkeypatch.setattr(phase, "write_plain", full)
     with pytest.raises(RoadExtractionError, match="work folder .*No space left on device"):
         boundaries(sample, tmp_path / "work")

@@ -422,13 +422,15 @@ def test_a_gap_in_the_trajectory_is_told_with_its_times(street):
     assert any("not from 1006.0 s to 1012.0 s" in warning for warning in listener.warnings)
 
 
-@pytest.mark.parametrize("kind, says", [("feet", "in feet"), ("exchanged", "x and y are exchanged"), ("degrees", "look like degrees")])
+@pytest.mark.parametrize("kind, says", [("feet", "in feet"), ("exchanged", "x and y are exchanged"), ("degrees", "look like degrees"),
+                                        ("zone", "two zones")])
 def test_a_file_with_coordinates_of_another_kind_than_the_others_is_refused_by_name(tmp_path, kind, says):
     trajectory = drive(PATH)
     x, y, z, time = surveyed_points(trajectory)
     late = time > 1010
     first = write_cloud(tmp_path / "early.laz", *(c[~late] for c in (x, y, z, time)), crs=CRS)
-    places = {"feet": (x / 0.3048, y / 0.3048, z / 0.3048), "exchanged": (y, x, z), "degrees": (9 + x * 1e-9, 48 + y * 1e-9, z)}[kind]
+    places = {"feet": (x / 0.3048, y / 0.3048, z / 0.3048), "exchanged": (y, x, z), "degrees": (9 + x * 1e-9, 48 + y * 1e-9, z),
+              "zone": (x - 430_000.0, y + 20_000.0, z)}[kind]
     second = write_cloud(tmp_path / "late.laz", *(c[late] for c in (*places, time)))
     with pytest.raises(RoadExtractionError, match=f"late.laz are of another kind.*{says}"):
         open_survey([first, second], trajectory)

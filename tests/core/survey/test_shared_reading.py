@@ -19,7 +19,7 @@ from lanewright.core.survey import blocks
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store import section_store
-from lanewright.core.survey.survey import SurveySettings, survey_in_folder
+from lanewright.core.survey.survey import SurveySettings, survey_in_file
 
 SETTINGS = SurveySettings(block=700)   # points
 
@@ -53,8 +53,8 @@ def opened(street, executor=None, progress=None, settings=SETTINGS, **execution)
             patch.setattr(opening, "executor_for", lambda *_: executor)
         survey = open_survey(clouds, trajectory, settings, progress or Progress(), ExecutionSettings(**execution))
     found = contents(survey).tobytes(), known(survey)
-    if survey.folder is not None:
-        again = survey_in_folder(str(survey.folder))
+    if survey.file is not None:
+        again = survey_in_file(str(survey.file))
         assert (contents(again).tobytes(), known(again)) == found
         again.store.close()
     survey.store.close()
@@ -99,7 +99,7 @@ def test_a_survey_without_times_is_read_alike(street, python):
 def killed_while_it_reads(executor):
     """Kill a worker that has begun to read."""
     def kill():
-        while not (list(executor.folder.glob("points/points-*")) and executor._all):
+        while not (list(executor.folder.glob("read/points-*")) and executor._all):
             time.sleep(0.005)
         next(iter(executor._all)).process.kill()
 
@@ -126,7 +126,7 @@ def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
         at = None
 
         def report(self, fraction):
-            if list(executor.folder.glob("points/points-*")):
+            if list(executor.folder.glob("read/points-*")):
                 self.at = self.at or time.monotonic()
                 raise Cancelled
 
@@ -166,26 +166,26 @@ class StopsReading(Heard):
 
 
 def read_parts(work):
-    """{result of a part that was read: time of its last change}."""
-    return {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.plain")}
+    """{result of a part that was read: number of the file}."""
+    return {path: path.stat().st_ino for path in work.glob("kept-*.plain")}
 
 
 @pytest.mark.parametrize("workers", [0, 2])
-def test_a_run_that_was_ended_while_it_read_goes_on_where_it_was(street, by_threads, tmp_path, monkeypatch, workers):
-    work, calls = tmp_path / "work", []
+def test_a_run_that_was_ended_while_it_read_goes_on_where_it_was(street, by_threads, tmp_path, workers):
+    work = tmp_path / "work"
     with pytest.raises(Cancelled):
         opened(street, progress=StopsReading(work, 3), work_folder=str(work), workers=workers)
     done = read_parts(work)
-    monkeypatch.setattr(opening.WorkFolder, "discard", lambda parts: calls.append(read_parts(work)))
     heard = Heard()
     assert opened(street, progress=heard, work_folder=str(work), workers=workers) == by_threads
-    assert len(done) >= 3 and len(calls[0]) > len(done) and all(calls[0][path] == when for path, when in done.items())
-    assert heard.says(f"{len(done)} of {len(calls[0])} parts of the work")
+    now = read_parts(work)
+    assert len(done) >= 3 and len(now) > len(done) and all(now[path] == file for path, file in done.items())
+    assert heard.says(f"{len(done)} of ")
 
 
-def test_a_work_folder_keeps_the_points_in_order_and_nothing_that_was_on_the_way(street, by_threads, tmp_path):
+def test_a_work_folder_keeps_the_points_and_nothing_unfinished(street, by_threads, tmp_path):
     assert opened(street, work_folder=str(tmp_path / "work")) == by_threads
-    assert not list(tmp_path.glob("work/*.parts")) and not list(tmp_path.rglob("*.part"))
+    assert not list(tmp_path.rglob("*.part"))
     heard = Heard()
     assert opened(street, progress=heard, work_folder=str(tmp_path / "work")) == by_threads
     assert heard.says("read by an earlier run")
@@ -197,11 +197,12 @@ def zeros(path):
     path.write_bytes(content[:-64] + bytes(64))
 
 
-@pytest.mark.parametrize("pattern", ["survey-*/survey.plain", "survey-*/points-*.bin"])
+@pytest.mark.parametrize("pattern", ["kept-*.plain", "survey/points-*.bin", "read/points-*.bin"])
 def test_points_that_a_power_failure_damaged_are_read_again(street, by_threads, tmp_path, pattern):
     work = tmp_path / "work"
     assert opened(street, work_folder=str(work)) == by_threads
-    zeros(next(work.glob(pattern)))
+    for path in work.glob(pattern):
+        zeros(path)
     assert opened(street, work_folder=str(work)) == by_threads
 
 
@@ -209,22 +210,9 @@ def test_of_a_reading_that_a_power_failure_ended_damaged_parts_are_not_used(stre
     work = tmp_path / "work"
     with pytest.raises(Cancelled):
         opened(street, progress=StopsReading(work, 3), work_folder=str(work))
-    for path in work.glob("*.parts/points/points-*.bin"):
+    for path in work.glob("read/points-*.bin"):
         zeros(path)
     assert opened(street, work_folder=str(work)) == by_threads
-
-
-def test_another_run_that_was_quicker_is_believed(street, by_threads, tmp_path, monkeypatch):
-    work = str(tmp_path / "work")
-    own = opening.read_survey
-
-    def slow(*arguments):
-        monkeypatch.setattr(opening, "read_survey", own)
-        opened(street, work_folder=work)
-        raise RoadExtractionError("The parts are gone.")
-
-    monkeypatch.setattr(opening, "read_survey", slow)
-    assert opened(street, work_folder=work) == by_threads
 
 
 class Blind(Threads):

@@ -7,11 +7,15 @@ import pytest
 import shapely
 from exported_maps import as_lanelets, as_roads
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.common.features import SIGNALS as SIGNALS_LAYER
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places, read_lanelet2
 from lanewright.products.export.opendrive.xodr import layers_of_opendrive, read_opendrive
 from lanewright.products.export.shared_borders import with_shared_borders
-from lanewright.products.export.sources import checked
+from lanewright.products.export.sources import RoadMapSource, checked
+from made_lanes import CRS as LANES_CRS
+from made_lanes import crossing
 from map_files import geometry, lane, lanelet_street, opendrive, road, written
 
 CRS = "EPSG:25832"
@@ -104,6 +108,38 @@ def test_lanelets_obey_rules_that_are_whole(tmp_path):
     assert not check_lanelets(whole, *node_places(whole, CRS)).found
     signs = [way.tags for way in whole.ways.values() if way.tags.get("type") == "traffic_sign"]
     assert [sign["subtype"] for sign in signs] == ["DE274"]
+
+
+def crossing_with(*signs):
+    """A crossing of four roads with (country, code, road) of signs beside the lanes that come from these, and a stop line before the second."""
+    lanes, signals, markings = crossing(), Features("PointZ", SIGNALS_LAYER, crs=LANES_CRS), Features("PolygonZ", MARKINGS, crs=LANES_CRS)
+    for country, code, road_number in signs:
+        left, right = lanes.borders(list(lanes.lane_id).index(f"{road_number}.1.1"))
+        signals.add(shapely.Point(right[-1]), kind="sign", country=country, code=code, lanes=f"{road_number}.1.1", heading=0.0, height_m=0.6)
+    left, right = lanes.borders(list(lanes.lane_id).index("2.1.1"))
+    markings.add(shapely.LineString([left[-1], right[-1]]).buffer(0.2, cap_style="flat"), **{"class": "stop_line"})
+    return RoadMapSource(lanes, signals=signals, markings=markings)
+
+
+def test_who_comes_to_a_sign_gives_way_to_those_whose_ways_cross_and_stops_at_the_line(tmp_path):
+    whole = lanelets_of(tmp_path, crossing_with(("DE", "205", 2), ("DE", "206", 4)))
+    name = {lanelet.id: lanelet.name for lanelet in whole.lanelets.values()}
+    rules = [rule for rule in whole.others.values() if rule.tags["subtype"] == "right_of_way"]
+    said = {role: [[name[id] for _, id in rule.members[role]] for rule in rules] for role in ("yield", "right_of_way")}
+    assert said == {"yield": [["2.1.1"], ["4.1.1"]], "right_of_way": [["1.1.1", "3.1.1"]] * 2}
+    assert [[whole.ways[id].tags["type"] for _, id in rule.members.get("ref_line", ())] for rule in rules] == [["stop_line"], []]
+    for rule in rules:
+        obeying = {lanelet.name for lanelet in whole.lanelets.values() if ("relation", rule.id) in lanelet.members.get("regulatory_element", ())}
+        assert obeying == {"1.1.1", "3.1.1", name[rule.members["yield"][0][1]]}
+    assert not check_lanelets(whole, *node_places(whole, CRS)).found
+    again = layers_of_lanelets(whole, CRS)
+    assert sorted(name[int(row["lanes"])] for _, row in again.signals) == ["2.1.1", "4.1.1"] and not again.left_out
+
+
+def test_a_sign_of_another_kind_and_one_before_a_junction_where_all_give_way_make_no_right_of_way(tmp_path):
+    for signs in ([("DE", "274", 2)], [("DE", "205", road_number) for road_number in (1, 2, 3, 4)]):
+        rules = lanelets_of(tmp_path, crossing_with(*signs)).others.values()
+        assert {rule.tags["subtype"] for rule in rules} == {"traffic_sign"}
 
 
 def test_a_reference_names_lanes_of_another_road_and_a_validity_some_of_a_road(tmp_path):

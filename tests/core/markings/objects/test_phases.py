@@ -7,9 +7,9 @@ import pytest
 from lanewright.core.countries.painted_symbols import SYMBOLS
 from lanewright.core.driving.alignment import curves_of_lanes
 from lanewright.core.execution.in_step import Asked, in_step
+from lanewright.core.execution.keep import Keep
 from lanewright.core.execution.phase import NoSource, Phase, Threads
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.markings.objects import cluster as phases
 from lanewright.core.markings.objects.cluster import asked, combs_of_windows, pieces_of_clusters
@@ -113,7 +113,7 @@ def test_works_on_several_roads_ask_together_though_one_has_fewer_steps():
     assert phases_run == [("combs_of_windows", 2), ("combs_of_windows", 1)]
 
 
-@pytest.mark.parametrize("executor", [Threads(2), RememberedResults(Threads(1)), WorkerProcesses(find_interpreter(), 1)])
+@pytest.mark.parametrize("executor", [Threads(2), Keep(Threads(1)), WorkerProcesses(find_interpreter(), 1)])
 def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, monkeypatch):
     """One of them is given lists of items, the other one by one; each work gets the answers to what it asked for."""
     tasks, run = [], type(executor).run
@@ -129,7 +129,7 @@ def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, mo
 
     with closing(executor):
         fits, combs = in_step([fitting(), looking()], executor)
-    assert len(tasks) == (0 if isinstance(executor, RememberedResults) else 1) and combs == [None] * 3
+    assert len(tasks) == (0 if isinstance(executor, Keep) else 1) and combs == [None] * 3
     for slope, fit in enumerate(fits):
         np.testing.assert_allclose(np.tan(fit.curve.heading(0.0)), slope, atol=1e-9)
 

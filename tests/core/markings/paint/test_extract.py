@@ -7,8 +7,8 @@ import pytest
 from lanewright.core.common import parallel
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution.keep import Keep
 from lanewright.core.execution.phase import THREADS, Threads
-from lanewright.core.execution.remembered import RememberedResults
 from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import windows
@@ -70,7 +70,7 @@ def test_where_a_road_changed_tiles_and_paint_nearby_are_made_anew_and_the_map_i
         return image, image.read_pixels(0, 0, image.width, image.height), extract_markings(points, image, frame).all_points().records
 
     alone = made(after)
-    monkeypatch.setattr(RoadPoints, "executor", RememberedResults(THREADS))
+    monkeypatch.setattr(RoadPoints, "executor", Keep(THREADS))
     first = made(before)
     monkeypatch.setattr(Threads, "run", noting)
     again = made(after, first[0])

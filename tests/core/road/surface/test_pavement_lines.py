@@ -102,7 +102,7 @@ def covered(edges, survey, side, half=half_of, within=0.2):
     return right.mean()
 
 
-@pytest.mark.parametrize("options", [{}, {"backwards": True}, {"shuffled": True}, {"density": 400}])
+@pytest.mark.parametrize("options", [{}, {"backwards": True}, {"shuffled": True}, {"density": 400}, {"density": 15}])
 def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options):
     survey = street(**options)
     edges = found(survey)

@@ -11,10 +11,9 @@ from heard import Heard
 from lanewright.core.survey.adjustment.trajectory_fit import fitted_trajectory, read_places, scanner_mountings
 from lanewright.core.survey.las.reader import read_headers
 from lanewright.core.survey.open_survey import open_survey
-from mirror_drives import Mirror, mirror_drive
+from mirror_drives import Mirror, mirror_drive, section
 
 PAIR = Mirror(turn=-45.0, lever=(-2.4, 0.3, 0.1)), Mirror(turn=45.0, lever=(-2.4, -0.3, 0.1), ahead=0.7)
-
 
 
 
@@ -107,7 +106,7 @@ def test_heights_that_are_upside_down_are_named(tmp_path):
 
 
 @pytest.mark.parametrize("metres, told_of", [((0.0, 0.8, 0.0), True), ((1.2, 0.0, 0.0), True), ((0.1, 0.15, 0.0), True), ((0.0, 0.0, 0.2), True),
-                                             ((0.0, 0.03, 0.02), False)])
+                                             ((0.1, 0.0, 0.0), True), ((0.0, 0.03, 0.02), False)])
 def test_a_step_between_the_files_of_one_drive_is_told_and_leaves_the_street_as_uncertain(tmp_path, metres, told_of):
     """The second half of a street is in another datum, by less than the half of a vehicle."""
     measured = mirror_drive(PAIR, seconds=20.0)
@@ -117,6 +116,24 @@ def test_a_step_between_the_files_of_one_drive_is_told_and_leaves_the_street_as_
     found, warned = told(replace(measured, place=place).write(tmp_path / "street.laz"), measured.trajectory())
     assert [bool(re.search("elsewhere beside the trajectory.*two datums", text)) for text in warned] == [True] * told_of
     assert found.sigma == pytest.approx(np.linalg.norm(metres) if told_of else 0.0, abs=0.15)
+
+
+def test_points_of_which_a_tile_holds_one_side_alone_show_no_step(tmp_path):
+    """A tile in the middle of a street is missing: at its ends points lie far ahead or far behind of their scanner."""
+    measured = mirror_drive(PAIR, seconds=20.0, corners=section(wall=(14.0, 6.0)))
+    kept = np.abs(measured.place[:, 0] - np.median(measured.place[:, 0])) > 30.0
+    found, warned = told(measured.write(tmp_path / "street.laz", kept), measured.trajectory())
+    assert found.seen and found.sigma == 0.0 and not warned
+
+
+def test_a_trajectory_that_is_mirrored_is_told_and_moves_nothing(tmp_path):
+    measured = mirror_drive(PAIR, seconds=20.0)
+    trajectory = measured.trajectory()
+    x, y = trajectory.x.mean(), trajectory.y.mean()
+    mirrored = replace(trajectory, x=x + trajectory.y - y, y=y + trajectory.x - x)
+    found, warned = told(measured.write(tmp_path / "street.laz"), mirrored)
+    assert len(warned) == 1 and "Half of the points lie more than" in warned[0] and "mirrored" in warned[0]
+    assert found.trajectory is mirrored and found.sigma > 15.0
 
 
 def test_the_ceiling_of_a_tunnel_is_no_road(tmp_path):
@@ -141,7 +158,8 @@ def test_times_of_broken_points_do_not_disturb_those_of_the_drive(straight):
     """A few points of a file whose times were damaged on the way."""
     path, trajectory = straight
     sample = read_places(read_headers([path]))
-    broken = replace(sample, time=np.r_[-1e300, sample.time[:-2], 1e300])
+    rows = np.r_[0, np.arange(len(sample.time)), 0]
+    broken = replace(sample, **{name: getattr(sample, name)[rows] for name in ("place", "scanner", "source")}, time=np.r_[-1e300, sample.time, 1e300])
     with np.errstate(all="raise"), warnings.catch_warnings():
         warnings.simplefilter("error")
         found = scanner_mountings(broken, trajectory)

@@ -4,8 +4,9 @@ import threading
 
 import numpy as np
 import pytest
+from lanewright.core.execution.phase import is_sealed
 from lanewright.core.survey.store import array_file
-from lanewright.core.survey.store.array_file import ArrayFile, files_are_whole, new_file, opened
+from lanewright.core.survey.store.array_file import ArrayFile, new_file, opened
 
 RNG = np.random.default_rng(3)
 ARRAYS = [RNG.integers(0, 2**31, 1001).astype(np.int32),
@@ -52,9 +53,9 @@ def test_a_finished_file_appears_whole_and_one_that_a_power_failure_damaged_is_k
     with pytest.raises(KeyboardInterrupt), new_file(tmp_path) as (file, _):
         put(file, ARRAYS[0])
         raise KeyboardInterrupt
-    assert [path.name for path in tmp_path.iterdir()] == [name] and files_are_whole(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [name] and is_sealed(tmp_path / name)
     assert opened(tmp_path / name).get(place, len(ARRAYS[1]), float).tolist() == ARRAYS[1].tolist()
     whole = (tmp_path / name).read_bytes()
     for damaged in (whole[:-1], b"", whole[:40] + b"?" + whole[41:]):
         (tmp_path / name).write_bytes(damaged)
-        assert not files_are_whole(tmp_path)
+        assert not is_sealed(tmp_path / name)

@@ -173,6 +173,15 @@ def test_a_heading_counted_from_east_becomes_one_from_north(tmp_path):
     assert "from east" in " ".join(found.notes)
 
 
+@pytest.mark.parametrize("off", [90.0, 180.0, 25.0])
+def test_a_heading_that_is_not_that_of_the_drive_is_told_and_not_used(tmp_path, off):
+    trajectory = street()
+    turned = replace(trajectory, heading=(trajectory.heading + off) % 360)
+    found = read_trajectory(write(tmp_path / "t.csv", turned))
+    assert [f"by {off:.0f}°" in doubt for doubt in found.doubts] == [True] * (off > 30.0)
+    assert np.isnan(found.heading).all() == (off > 30.0)
+
+
 def geographic(trajectory, epsg=32632):
     from pyproj import Transformer
 

@@ -1,0 +1,246 @@
+"""Results that a later run may want, kept under the hash of what they depend on: in memory, or as files of a folder.
+
+A result depends on a function, plain settings, its item, and what it reads. Resuming, another setting of a late stage and a correction are one case:
+what is not kept is made. Other files, code or versions of packages give other hashes.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress, RememberedMessages
+from .phase import THREADS, Executor, Items, NoSource, Phase, digest, is_sealed, name_of, read_plain, write_plain
+from .tasks import code_digest, versions
+from .weights import EXECUTION
+
+POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name: they lie in the same folder, or in one within it
+OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
+
+
+def work_folder(path: str) -> Path:
+    """A folder of the user's for what is kept, which is made where it is missing.
+
+    Raises RoadExtractionError if nothing can be written there.
+    """
+    folder = Path(path).absolute()
+    try:
+        folder.mkdir(exist_ok=True)
+        trial = folder / f"{uuid4().hex}.part"
+        trial.touch()
+        trial.unlink()
+    except OSError as error:
+        raise work_folder_error(folder, error) from error
+    return folder
+
+
+def work_folder_error(folder: Path, error: OSError) -> RoadExtractionError:
+    """One sentence about a folder that cannot be used."""
+    return RoadExtractionError(f"The work folder {folder} cannot be used: {error.strerror or error}. Choose a folder that can be written to, with "
+                               "room for about 150 bytes for every point near the road, or none; a folder that a power failure has damaged is to "
+                               "be deleted.")
+
+
+class Keep(Executor):
+    """Executor that keeps the results of phases, and has another one do what is not kept.
+
+    A few that are missing are computed by threads where no user named the folder: workers would have to be started again.
+
+    work : folder of the user's; None for the folder of the executor, which goes with it, or for memory where it has none. There phases are kept
+        whose items hold all that they need, or that say in which state they read the rest
+    """
+
+    def __init__(self, executor: Executor, work: Path | None = None):
+        self.executor, self.work, self.folder = executor, work, work or executor.folder
+        self._base: tuple[Any, ...] = code_digest(), versions()   # what all hashes depend on
+        self._results: dict[str, Any] = {}   # in memory
+        self._whole: dict[str, Path] = {}   # files of points that were seen to be whole
+        self._first = 0   # how many results there were after the first run
+        # all but the work itself is that of the executor
+        self.sees, self.forget, self.release, self.close = (  # type: ignore[method-assign]
+            executor.sees, executor.forget, executor.release, executor.close)
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
+        return self.run_together(replace(phase, listed=0), items, progress)
+
+    def run_together(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
+        """As of `Executor`; each item is kept by itself, whatever others it comes with."""
+        if self.folder is None and phase.state is None and not isinstance(phase.source, NoSource):
+            yield from self.executor.run_together(phase, items, progress)
+            return
+        try:
+            names = self._names(phase, items)
+            missing = {name: k for k, name in enumerate(names) if not self._is_kept(name)}
+            rows = list(missing.values())
+            if self.work is not None and len(rows) < len(names):
+                progress.info(f"{len(names) - len(rows)} of {len(names)} parts of the work were finished by an earlier run.")
+            files = [self._path(name) for name in missing] if self.folder else ()
+            few = self.work is None and (2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items)
+            made = (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
+            for k, name in enumerate(names):
+                if name not in missing:
+                    yield self._kept(name, phase, items[k])
+                    continue
+                del missing[name]   # a later item may be the same
+                result = next(made)
+                if self.folder is None:
+                    self._results[name] = result
+                yield result
+        except OSError as error:
+            raise self.disk_error(error) from error
+        progress.report(1.0)
+
+    def _names(self, phase, items):
+        """The hash of what each item depends on."""
+        state = phase.state or (lambda item: None)
+        source = phase.source.recipe(self.folder) if self.folder and phase.state is None else None   # names the folder, which may be moved
+        shared = self._hash((name_of(phase.function), source, phase.arguments))
+        return [digest((shared, item, state([item] if phase.listed else item))) for item in items]
+
+    def _hash(self, value):
+        return digest((self._base, value), str(self.work or ""))
+
+    def _path(self, name):
+        return self.folder / f"kept-{name}.plain"
+
+    def _is_kept(self, name):
+        return name in self._results if self.folder is None else self._path(name).exists()
+
+    def _kept(self, name, phase, item):
+        """A result that is kept; what cannot be read is made again."""
+        if self.folder is None:
+            return self._results[name]
+        try:
+            return self._read(name)
+        except OSError:
+            result, = THREADS.run_together(phase, [item], keep=[self._path(name)])
+            return result
+
+    def _read(self, name):
+        """A result in a file, which has been used now, as have the files that it names; OSError where one is gone or not as it was written."""
+        path, texts = self._path(name), []
+        value = read_plain(path, texts.append)
+        named = set(POINTS.findall(texts[0]))
+        places = [place for file in named - self._whole.keys() for place in (self.folder / file, *self.folder.glob(f"*/{file}"))]
+        self._whole.update({place.name: place for place in places if is_sealed(place)})
+        if not named <= self._whole.keys():
+            raise OSError("points are gone or damaged")
+        for used in (path, *map(self._whole.get, named)):
+            with suppress(OSError):   # of another user
+                os.utime(used)
+        return value
+
+    def made(self, of: Any, make: Callable[[Progress], Any], progress: Progress) -> Path:
+        """The file of (a plain value that `make` gives, what was said while it was made), whose phases are kept by the hash of `of` from then on."""
+        name = self._hash(of)
+        path = self._path(name)
+        try:
+            _, messages = self._read(name)
+        except OSError:
+            heard = RememberedMessages(progress)
+            write_plain(path, (make(heard), heard.messages))
+        else:
+            progress.info("The points were read by an earlier run and are taken from the work folder. It said:")
+            for kind, text in messages:
+                (progress.warn if kind == "warn" else progress.info)(text)
+            progress.report(1.0)
+        self._base = *self._base, name   # other surveys have other hashes
+        self._trim()
+        return path
+
+    def _trim(self):
+        """Remove what no run has used for a day, the oldest first, while the folder holds more than is free on its disk."""
+        files = []
+        for path in self.work.rglob("*"):
+            with suppress(OSError):   # another run may have removed it
+                files += [(path.stat().st_mtime, path.stat().st_size, path)] if OURS.fullmatch(path.name) else []
+        excess = sum(size for _, size, _ in files) - shutil.disk_usage(self.work).free
+        for used, size, path in sorted(files):
+            if excess <= 0 or time.time() - used < EXECUTION.unused_time:
+                return
+            path.unlink(missing_ok=True)
+            excess -= 2 * size
+
+    @property
+    def full(self) -> bool:
+        """Whether so much is kept that the next run had better begin anew; asked after each run of a window."""
+        count = len(self._results) if self.folder is None else sum(1 for _ in self.folder.glob("kept-*"))
+        self._first = self._first or count
+        return count > EXECUTION.runs_kept * self._first
+
+    def discard(self, files: Sequence[Path]) -> None:
+        if self.work is None:
+            self.executor.discard(files)
+
+    def in_threads(self) -> Executor:
+        return Keep(THREADS, self.work)
+
+    def disk_error(self, error: OSError) -> RoadExtractionError:
+        return self.executor.disk_error(error) if self.work is None else work_folder_error(self.work, error)
+
+
+# The stages of a run in a window, whose results hold open files: as long as they depend on the same, the next run goes on from them.
+
+
+class KeptRun:
+    """The last result of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
+
+    phases, free : the Keep of these runs, and what frees the disk space of their points
+    """
+
+    def __init__(self) -> None:
+        self.wanted, self._in_use = False, threading.Lock()
+        self.phases: Keep | None = None
+        self.free: Callable[[], None] = lambda: None
+        self._results: dict[str, tuple[str, Any]] = {}
+
+    def end(self) -> None:
+        """Keep no run any more, and free the disk space of the last one."""
+        self.wanted = False
+        if self.take():
+            self.give_back()
+
+    def take(self) -> bool:
+        """Whether the caller may use it, until `give_back`; another run that is at work has it."""
+        return self._in_use.acquire(blocking=False)
+
+    def give_back(self) -> None:
+        if not self.wanted or self.phases is not None and self.phases.full:
+            self.drop()
+        self._in_use.release()
+
+    def drop(self) -> None:
+        """Let all results go, and free the disk space of the points."""
+        self.free()
+        self._results, self.phases, self.free = {}, None, lambda: None
+
+    def known(self, stage: str, digest: str) -> bool:
+        """Whether the result of a stage is here; where that of the first stage is another one, all go."""
+        if stage in self._results and self._results[stage][0] == digest:
+            return True
+        if stage == next(iter(self._results), ""):
+            self.drop()
+        return False
+
+    def result(self, stage: str) -> Any:
+        return self._results[stage][1]
+
+    def before(self, stage: str) -> Any:
+        """The result of a stage that the next one is made from, and is no result any more; None where there is none."""
+        return self._results.pop(stage, ("", None))[1]
+
+    def keep(self, stage: str, digest: str, result: Any) -> None:
+        self._results[stage] = digest, result
+
+
+WINDOW = KeptRun()   # of the program's window, which wants it
