@@ -183,7 +183,8 @@ def _between(a, b):
     second = np.full(count, None, object)
     second[:] = [min((reading for reading in (a.second[-1], b.second[0]) if reading is not None),
                      key=lambda reading: reading.nats, default=None)] * count
-    return LaneTrack(a.last + 1, d, width, np.full(count, BRIDGED), np.ones(count, bool), *[np.full(count, -1)] * 4, *sure, a.direction, second, aside)
+    return LaneTrack(a.last + 1, d, width, np.full(count, BRIDGED), np.ones(count, bool), *[np.full(count, -1)] * 4, *sure, a.direction,
+                     second, aside)
 
 
 def connect(tracks: list[LaneTrack], longest: float) -> list[LaneTrack]:

@@ -200,8 +200,8 @@ def _where_driven(part, s, estimate, span, lane_width, ends_bare):
 
     Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
     several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or are as unlike as lanes of a road are,
-    both as probable. Vehicles keep to the middle with some scatter; beside a line they rarely give way to something and show nothing. All these are
-    normal errors about the middle, so it is moved as far as the drive is surer.
+    both as probable. A lane that `ends_bare`, without a line, is off by SAME_LANE. Vehicles keep to the middle with some scatter; beside a line they
+    rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive is surer.
     """
     evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
@@ -210,9 +210,9 @@ def _where_driven(part, s, estimate, span, lane_width, ends_bare):
     count = inside.sum(axis=0)
     beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    anywhere, alone = SAME_LANE**2 if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
+    anywhere, alone = SAME_LANE**2 + 0.0 * room if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
     full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
-    of_place = np.stack([0.0 * room, 0.0 * room + anywhere] if alone else [anywhere + 0.0 * room, anywhere + weights.width_sigma**2 + 0.0 * room])
+    of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
     variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
     probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
     nothing = alone * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma

@@ -89,7 +89,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
 
 
 def _bare_borders(d, usual):
-    """Where lanes beside lines may end on bare asphalt: where there is too much room up to the next line. They are as wide as others beside a line."""
+    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside the same line."""
     row, station = d.spans.owner, d.spans.station
     order = np.lexsort((-d.values, station))
     order = order[np.isfinite(d.values[order])]
@@ -100,8 +100,8 @@ def _bare_borders(d, usual):
     width = np.where(count > 0, total / np.maximum(count, 1), usual)[row]
     borders = []
     for beside, sign in zip(pairs, (-1, 1)):
-        beside, left_over = beside[room < LANES.max_lanes * width[beside]], (room - width[beside])[room < LANES.max_lanes * width[beside]]
-        beside = beside[left_over > LANES.least_left_over]
+        usual_there = width[beside]
+        beside = beside[(room > usual_there + LANES.least_left_over) & (room < LANES.max_lanes * usual_there)]
         values = np.full(len(row), np.nan)
         values[beside] = d.values[beside] + sign * width[beside]
         borders += [(int(d.spans.first[k]), values[d.spans.values_of(k)]) for k in np.unique(row[beside]).tolist()]

@@ -287,9 +287,9 @@ def _lanes(c, lane_width, first_direction, strips):
 def _place_shares(estimate, lanes, chosen, part):
     """The rows of the lanes of the chosen strips, from left to right, and (L, 2) of them: probability and confidence of LaneSpan.
 
-    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it, with the sureness of RoadEstimate,
-    and of those of its direction among them. Of directions the most probable sequences are weighed against each other where the other side of
-    traffic counts too: a road that is one way is the same reading on both.
+    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it, and of those of its direction
+    among them. Of directions the most probable sequences are weighed against each other where the other side of traffic counts too: a road that is
+    one way is the same reading on both.
     """
     other = estimate.other
     best = estimate.once_total

@@ -246,7 +246,7 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
         way = np.where(lane < split, first_direction, -first_direction)
         # beside the lanes of a strip other roads have theirs
         there = inside[p] if evidence.own is None or p < evidence.own else inside[p] & (position >= 0) & (position < number)
-        cost += there * (np.minimum(0.5 * (offset / w.kept_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
+        cost += there * (np.minimum(0.5 * (offset / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == -direction, w.driven_against, 0.0))
     return cost
 
 

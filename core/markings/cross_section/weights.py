@@ -76,8 +76,7 @@ class EstimateWeights:
     off_asphalt: float = 3.0   # of a lane on what is no road surface
     driven_rest: float = 8.0   # of a vehicle that drives where no lane is
     driven_against: float = 12.0   # of a vehicle that drives against its lane
-    driven_sigma: float = 0.8   # m, of how far aside a vehicle gives way to something
-    kept_sigma: float = 0.35   # m, scatter of a vehicle about the middle of its lane where it does not, over some metres
+    driven_sigma: float = 0.8   # m, scatter of a vehicle about the middle of its lane
     driven_astride: float = 3.0   # the most that this costs
     hatched_lane: float = 8.0   # of a lane over a hatched area
     arrow_outside: float = 4.0   # of an arrow where no lane is
