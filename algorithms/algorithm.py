@@ -111,7 +111,7 @@ class Algorithm:
     def add_sink(self, name, fields=(), **more):
         """A vector output; the help lists its fields."""
         listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
-        self.add_output("layer", name, help=tr("Fields: {fields}.").format(fields=listed) if fields else "", schema=tuple(fields), **more)
+        self.add_output("layer", name, help=tr("Fields: {fields}.", fields=listed) if fields else "", schema=tuple(fields), **more)
 
     def add_map_sink(self, name, **more):
         """Add a layer of the road map as an output."""
@@ -232,14 +232,13 @@ NumberOutput = namedtuple("NumberOutput", "name label")   # a number among the r
 
 def number_refused(label, name, value, least, most):
     """What may be given, where a number may not be."""
-    return tr("{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.").format(
-        label=label, name=name, value=value, least=least, most=most)
+    return tr("{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.", label=label, name=name, value=value, least=least,
+              most=most)
 
 
 def choice_refused(label, name, value, choices):
     """What may be given, where a choice may not be."""
-    return tr("{label} ({name}) is {value}; it must be one of {choices}.").format(
-        label=label, name=name, value=value, choices=", ".join(choices))
+    return tr("{label} ({name}) is {value}; it must be one of {choices}.", label=label, name=name, value=value, choices=", ".join(choices))
 
 
 # The layers of the road map: what each is called, its fields and its geometry, for every algorithm that takes or gives it.

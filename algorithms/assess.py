@@ -30,9 +30,8 @@ def tolerances(call, name="TOLERANCES"):
     try:
         return tuple(float(part) for part in parts)
     except ValueError:
-        raise RoadExtractionError(
-            tr("{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.").format(label=call.label(name), text=text)
-        ) from None
+        raise RoadExtractionError(tr("{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.", label=call.label(name),
+                                     text=text)) from None
 
 
 def layer_of(call, name):
@@ -107,7 +106,7 @@ def area_of(call, crs, warn):
         return None
     products.assess.layers.check_kind(layer, ("Polygon",), "polygons")
     if not layer.geometries:
-        raise RoadExtractionError(tr("{label} has no polygons. Leave it empty to judge everywhere.").format(label=layer.label))
+        raise RoadExtractionError(tr("{label} has no polygons. Leave it empty to judge everywhere.", label=layer.label))
     return shapely.union_all(shapely.make_valid(shapely.force_2d(products.assess.layers.in_crs(layer, crs, warn).geometries)))
 
 
@@ -165,9 +164,9 @@ class AssessBoundaries(Algorithm):
             names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
             call.text("REPORT", products.report.assessment.boundary_report(accuracy, layer, names, progress.warnings))
         numbers = found_numbers(_boundary_numbers(accuracy))
-        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
-            correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
-            rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
+        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.",
+                         correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
+                         rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
         return numbers
 
 
@@ -238,9 +237,9 @@ class AssessMarkings(Algorithm):
         if call.wants("REPORT"):
             self._report(call, accuracy, layer, frame, image, progress.warnings)
         numbers = found_numbers(_marking_numbers(accuracy))
-        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
-            cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
-            tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
+        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.", cells=settings.tolerance,
+                         strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
+                         tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
         return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
@@ -291,8 +290,8 @@ class AssessDrivingLines(Algorithm):
                 match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
                 call.value("WIDTH") == "total-width", progress.warnings))
         numbers = found_numbers(_line_numbers(accuracy, settings.tolerance))
-        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
-            tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
+        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.", tolerance=100 * settings.tolerance,
+                         rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
         return numbers
 
     def _settings(self, call):

@@ -100,8 +100,8 @@ class Call:
         """The path of one point cloud; "" where the optional parameter is empty."""
         paths = cloud_files([self.file(name)], self.label(name))
         if len(paths) > 1:
-            raise RoadExtractionError(tr("{label}: {path} names {count} point clouds, and one is needed. Choose one of them.").format(
-                label=self.label(name), path=self.file(name), count=len(paths)))
+            raise RoadExtractionError(tr("{label}: {path} names {count} point clouds, and one is needed. Choose one of them.", label=self.label(name),
+                                         path=self.file(name), count=len(paths)))
         return existing_file(paths[0], self.label(name)) if paths else ""
 
     def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
@@ -110,9 +110,8 @@ class Call:
         if path is not None:
             return core.survey.trajectory.reader.read_trajectory(existing_file(str(path), self.label(name)), crs, columns=columns)
         if columns.strip():
-            raise RoadExtractionError(
-                tr("Columns are those of a text file; {label} is a layer, whose fields have names. Leave Columns empty, or choose the file.").format(
-                    label=self.label(name)))
+            raise RoadExtractionError(tr("Columns are those of a text file; {label} is a layer, whose fields have names. Leave Columns empty, or "
+                                         "choose the file.", label=self.label(name)))
         source = self.source(name)
         return None if source is None else read_trajectory_source(source, crs, heights_needed)
 
@@ -169,21 +168,19 @@ class Call:
                 other = label_by_target.setdefault(os.path.realpath(path), spec.label)
                 if other != spec.label:
                     raise RoadExtractionError(tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a folder of "
-                                                 "its own.").format(first=other, second=spec.label, path=path))
+                                                 "its own.", first=other, second=spec.label, path=path))
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
             read = self.read_as(value, path) or self._cloud_at(path)
             if read:
-                raise RoadExtractionError(
-                    tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
-                        label=spec.label, path=path, input=read))
+                raise RoadExtractionError(tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it "
+                                             "another name.", label=spec.label, path=path, input=read))
             # layers of one GeoPackage differ in the rest of the value
             target = str(path.absolute()) if value == str(path) else value
             if target in label_by_target:
-                raise RoadExtractionError(
-                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each its own file, "
-                       "or a table of one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
-                        first=label_by_target[target], second=spec.label, path=path))
+                raise RoadExtractionError(tr("{first} and {second} would both be written to {path}, and one would be lost. Give each its own file, "
+                                             "or a table of one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).",
+                                             first=label_by_target[target], second=spec.label, path=path))
             label_by_target[target] = spec.label
             check_writable(path, spec.label)
 
@@ -209,7 +206,7 @@ class Call:
             self._made_folders.append(folder)
         if read := self._cloud_at(folder / file_name):
             raise RoadExtractionError(tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Choose another "
-                                         "folder.").format(label=self.label(name), path=folder / file_name, input=read))
+                                         "folder.", label=self.label(name), path=folder / file_name, input=read))
         self._results[name] = str(folder)
         return str(self._unfinished.begin(folder / file_name))
 
@@ -274,7 +271,7 @@ def run(call, progress):
         claim_memory()
         call.check_destinations()
         for name in filter(call.given, call.algorithm.RETIRED):
-            listener.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.").format(name=name))
+            listener.warn(tr("{name} was given and has no effect any more: the usual value is used. Leave it out.", name=name))
         with cancellation_scope(progress):
             results = call.algorithm.work(call, listener) or {}
         call.warnings = listener.warnings
@@ -304,18 +301,16 @@ def _reason(error):
 def existing_file(path, label):
     """The path, or one sentence on why it cannot be used."""
     if "://" in path or "|" in path:
-        raise RoadExtractionError(
-            tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.").format(label=label, path=path))
+        raise RoadExtractionError(tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.", label=label, path=path))
     if not Path(path).is_file():
-        raise RoadExtractionError(
-            tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path))
+        raise RoadExtractionError(tr("{label}: there is no file {path}. Check the name and the folder.", label=label, path=path))
     return path
 
 
 def time_left(seconds):
     """How long a run will still take, as the user reads it, in the unit that gives a small number."""
     if seconds < 60:
-        return tr("About {number} s left").format(number=round(seconds))
+        return tr("About {number} s left", number=round(seconds))
     if seconds < 3600:
-        return tr("About {number} min left").format(number=round(seconds / 60))
-    return tr("About {number} h left").format(number=round(seconds / 3600))
+        return tr("About {number} min left", number=round(seconds / 60))
+    return tr("About {number} h left", number=round(seconds / 3600))

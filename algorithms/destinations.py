@@ -60,29 +60,24 @@ def check_suffix(path, spec, vector_suffixes):
     """Raise RoadExtractionError where the name promises a kind of file that is not written; suffixes of vector formats have no dot."""
     name, suffix, kinds = path.name.lower(), path.suffix.lower().lstrip("."), spec.suffixes or SUFFIXES.get(spec.kind, ())
     if spec.kind == "layer" and suffix == "dxf":
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
-               "QGIS algorithm “Export layers to DXF”.").format(label=spec.label, path=path))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
+                                     "QGIS algorithm “Export layers to DXF”.", label=spec.label, path=path))
     if spec.kind == "layer" and suffix not in vector_suffixes:
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.").format(
-                label=spec.label, path=path))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.",
+                                     label=spec.label, path=path))
     if spec.kind != "layer" and (not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las"))):
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.").format(
-                label=spec.label, path=path, kinds=tr(" or ").join(kinds)))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.", label=spec.label,
+                                     path=path, kinds=tr(" or ").join(kinds)))
 
 
 def check_writable(path, label):
     """Raise RoadExtractionError, before any work, where `path` cannot be written."""
     folder = path.absolute().parent
     if not folder.is_dir():
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, but there is no folder {folder}. Create it or choose another.").format(
-                label=label, path=path, folder=folder))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, but there is no folder {folder}. Create it or choose another.",
+                                     label=label, path=path, folder=folder))
     if path.is_dir():
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, which is a folder. Name a file in it.").format(label=label, path=path))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, which is a folder. Name a file in it.", label=label, path=path))
     try:
         # Asking is not enough: a read-only disk and a share say yes and then refuse
         with tempfile.TemporaryFile(dir=folder):
@@ -91,17 +86,14 @@ def check_writable(path, label):
             with open(path, "r+b"):
                 pass
     except OSError as error:
-        raise RoadExtractionError(
-            tr("{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.").format(
-                label=label, path=path, reason=error.strerror)
-        ) from error
+        raise RoadExtractionError(tr("{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.",
+                                     label=label, path=path, reason=error.strerror)) from error
 
 
 def check_folder(path, label):
     """Raise RoadExtractionError, before any work, where files cannot be written into a folder, which need not be there."""
     if path.exists() and not path.is_dir():
-        raise RoadExtractionError(
-            tr("{label} was to be written to {path}, which is a file. Name a folder.").format(label=label, path=path))
+        raise RoadExtractionError(tr("{label} was to be written to {path}, which is a file. Name a folder.", label=label, path=path))
     check_writable(path / ".new" if path.is_dir() else path, label)
 
 
@@ -198,6 +190,5 @@ def _opened(path):
         with closing(sqlite3.connect(path)) as database:
             yield database
     except sqlite3.Error as problem:
-        raise RoadExtractionError(
-            tr("{path} cannot be written: {reason}. Close the program that holds it, or choose another file.").format(path=path, reason=problem)
-        ) from problem
+        raise RoadExtractionError(tr("{path} cannot be written: {reason}. Close the program that holds it, or choose another file.", path=path,
+                                     reason=problem)) from problem

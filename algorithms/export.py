@@ -20,14 +20,6 @@ from .vector_source import LINE
 READ_LAYERS = ("DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS", "SIGNALS")   # that a map is read into beside the lanes
 
 
-def add_map_layers(algorithm):
-    """The layers that a map is read into, and their CRS."""
-    algorithm.add_input("crs", "CRS", optional=True)
-    algorithm.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
-    for name in READ_LAYERS:
-        algorithm.add_map_sink(name, optional=True)
-
-
 def add_any_map(algorithm):
     """A file of either format, and the CRS that it is read in."""
     algorithm.add_input("file", "INPUT", file_filter="HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)")
@@ -66,7 +58,7 @@ def write_map_layers(call, layers, progress):
     lanes = layers.lanes
     driven = (lanes.type == "driving") | (lanes.type == "connector")
     length = float(lanes.length[driven].sum())
-    progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.").format(count=len(lanes), length=length))
+    progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.", count=len(lanes), length=length))
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
@@ -95,7 +87,7 @@ def road_map_source(call, progress):
         road_points = road_points_of(call, "ROAD_POINTS", progress)
         lanes, share = sources.with_surface_heights(source.lanes, road_points)
         road_points.close()
-        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.").format(share=100 * share))
+        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.", share=100 * share))
         source = replace(source, lanes=lanes)
     return source
 
@@ -107,7 +99,7 @@ def lanes_with_borders(source):
 
 def warn_of_faults(notes, findings, progress):
     """Say what a map lacks, and what the check of its file found."""
-    progress.warn_all((*notes, *(tr("{fault}: {count}").format(fault=told(fault), count=count) for fault, count in findings.counts().items())))
+    progress.warn_all((*notes, *(tr("{fault}: {count}", fault=told(fault), count=count) for fault, count in findings.counts().items())))
 
 
 def fault_table(findings):
@@ -132,8 +124,7 @@ class RoadAttributes(Algorithm):
 
     def work(self, call, progress):
         if bool(call.file("OSM_FILE")) == call.given("WAYS"):
-            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).").format(
-                file=call.label("OSM_FILE"), layer=call.label("WAYS")))
+            raise RoadExtractionError(tr("Give either {file} (OSM_FILE) or {layer} (WAYS).", file=call.label("OSM_FILE"), layer=call.label("WAYS")))
         areas = call.features("LANES", LANES + ROAD_ATTRIBUTES, "PolygonZ")
         lanes = core.driving.layers.Lanes.from_features(areas)
         if not len(lanes):
@@ -152,7 +143,7 @@ class RoadAttributes(Algorithm):
             row.update(known.get(str(row["lane_id"]), {}))
         if not known:
             progress.warn(tr("No lane lies along a way that says anything. Do the ways cover the survey?"))
-        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.").format(known=len(known), count=len(lanes)))
+        progress.info(tr("{known} of {count} lanes and pieces lie along ways that say something.", known=len(known), count=len(lanes)))
         call.layer("OUTPUT", areas)
         counts = {name: float(sum(row.get(field) is not None for row in areas.rows))
                   for name, field in (("SPEEDS", "speed_kmh"), ("NAMES", "name"))}
@@ -162,7 +153,7 @@ class RoadAttributes(Algorithm):
 def _ways_of_layer(source, crs):
     """The roads of a layer of lines in the CRS of the lanes."""
     if source.kind != LINE or not source.stored_crs:
-        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.").format(label=source.label))
+        raise RoadExtractionError(tr("{label} must be a layer of lines with a CRS.", label=source.label))
     lines = [(shapely.get_coordinates(part), dict(zip(source.names, values))) for wkb, values in source.stored_rows() if wkb
              for part in shapely.get_parts(shapely.from_wkb(wkb))]
     return products.export.road_attributes.ways_in(lines, source.stored_crs, crs)
@@ -214,11 +205,11 @@ def write_opendrive(call, source, name, progress):
         notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
     if across.largest > settings.tolerance or rise.largest > settings.tolerance:
         x, y, _ = (across if across.largest > settings.tolerance else rise).worst
-        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
-                        "tolerance, the farthest near x {x:.1f}, y {y:.1f}.").format(across=across.largest, rise=rise.largest, x=x, y=y))
+        notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the tolerance, the "
+                        "farthest near x {x:.1f}, y {y:.1f}.", across=across.largest, rise=rise.largest, x=x, y=y))
     warn_of_faults(notes, check, progress)
-    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
-        roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+    progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.", roads=len(whole.roads),
+                     junctions=len(whole.junctions), across=across.largest))
     if call.wants("REPORT"):
         call.text("REPORT", _report(name, whole, check, shown, (across, rise, driven, single), notes))
     numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": check.successors, "FINDINGS": len(check.found),
@@ -283,20 +274,20 @@ def write_lanelet2(call, source, name, progress):
     whole = products.export.lanelet_map.read_lanelet2(path)
     check = products.export.check.lanelets.check_lanelets(whole, *products.export.lanelet_map.node_places(whole, source.lanes.crs))
     progress.report(0.8)
-    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+    notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.", count=count, kind=kind)
                               for kind, count in draft.skipped.items())]
     if draft.added:
-        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.").format(
-            count=draft.added))
+        notes.append(tr("{count} lanes end where another begins that they are not linked to; in Lanelet2 the one leads to the other.",
+                        count=draft.added))
     if draft.unmet:
-        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.").format(
-            count=draft.unmet))
+        notes.append(tr("{count} links of the map join lanes whose ends do not meet; Lanelet2 cannot say them, and they were left out.",
+                        count=draft.unmet))
     if degrees.local:
         notes.append(tr("The layer of lanes has no CRS: the map has local coordinates, and latitudes and longitudes about 0."))
     warn_of_faults(notes, check, progress)
     numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
                "SUCCESSORS": float(check.successors), "FINDINGS": float(len(check.found))}
-    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
+    progress.info(tr("{count} lanelets; latitude and longitude by: {way}.", count=len(draft.lanelets), way=told(degrees.way)))
     if call.wants("REPORT"):
         accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
         facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), check.successors),
@@ -327,8 +318,8 @@ class ExportCad(Algorithm):
         kind, path = call.value("FORMAT"), call.destination("OUTPUT") or ""
         named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
         if named != kind and path != "TEMPORARY_OUTPUT":
-            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
-                path=path, named=named, kind=kind))
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.", path=path, named=named,
+                                         kind=kind))
         source = road_map_source(call, progress.part(0.0, 0.2))
         progress.warn_all(source.notes)
         numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
@@ -343,7 +334,7 @@ def _dxf(call, source, progress):
     lines = products.cad.dxf_lines(source)
     products.cad.write_dxf(lines, call.new_file("OUTPUT"), source.lanes.crs)
     counts = Counter(line.layer for line in lines)
-    progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
+    progress.info(tr("{count} polylines in {layers} layers.", count=len(lines), layers=len(counts)))
     return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [(tr("Layers"), (tr("Layer"), tr("Polylines")), sorted(counts.items()))]
 
 
@@ -354,10 +345,10 @@ def _landxml(call, source, progress):
     Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
     irregular = sum(alignment.plan is None for alignment in alignments)
     if irregular:
-        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.").format(count=irregular))
+        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.", count=irregular))
     missed = max((alignment.missed for alignment in alignments), default=0.0)
-    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
-        count=len(alignments), length=sum(alignment.length for alignment in alignments), missed=missed))
+    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.", count=len(alignments),
+                     length=sum(alignment.length for alignment in alignments), missed=missed))
     rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
             for one in alignments]
     tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
@@ -418,7 +409,10 @@ class ImportOpenDrive(Algorithm):
 
     def declare(self):
         self.add_input("file", "INPUT", file_filter=f"{self.FILES};;All files (*.*)")
-        add_map_layers(self)
+        self.add_input("crs", "CRS", optional=True)
+        self.add_sink("LANES", fields=LANES + ROAD_ATTRIBUTES, geometry="PolygonZ", optional=True)
+        for name in READ_LAYERS:
+            self.add_map_sink(name, optional=True)
 
     def work(self, call, progress):
         return write_map_layers(call, map_layers(call, progress, self.LANELETS), progress)
@@ -444,8 +438,9 @@ class ConvertMap(Algorithm):
         path, output = map_file(call), str(call.output_path("OUTPUT"))
         from_lanelets = _is_lanelet2(path)
         if from_lanelets == output.lower().endswith(".osm"):
-            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.").format(
-                path=path, output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE", ending=".xodr" if from_lanelets else ".osm"))
+            raise RoadExtractionError(tr("{path} is {kind} already, and {output} would be too. Give the result the ending {ending}.", path=path,
+                                         output=output, kind="Lanelet2" if from_lanelets else "OpenDRIVE",
+                                         ending=".xodr" if from_lanelets else ".osm"))
         layers = map_layers(call, progress.part(0.0, 0.2), from_lanelets)
         source = lanes_with_borders(products.export.sources.checked(layers))
         numbers = (write_opendrive if from_lanelets else write_lanelet2)(call, source, Path(path).name, progress.part(0.2, 1.0))
@@ -482,13 +477,12 @@ class CheckMap(Algorithm):
         groups, _ = check.groups()
         for group in groups[:ROWS_IN_LOG]:
             places = products.report.hd_map.places_of_findings(group, PLACES_IN_LOG)
-            progress.warn(tr("{fault}: {count} ({places}). {text}").format(
-                fault=told(group.worst.fault), count=group.count, places=places, text=told(group.worst.text)))
+            progress.warn(tr("{fault}: {count} ({places}). {text}", fault=told(group.worst.fault), count=group.count, places=places,
+                             text=told(group.worst.text)))
         if len(groups) > ROWS_IN_LOG:
-            progress.warn(tr("The first {shown} of {count}; the layer has all of them.").format(shown=ROWS_IN_LOG, count=len(groups)))
-        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
-                         "side.").format(
-            findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
+            progress.warn(tr("The first {shown} of {count}; the layer has all of them.", shown=ROWS_IN_LOG, count=len(groups)))
+        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by side.",
+                         findings=len(check.found), lanes=check.lanes, successors=check.successors, neighbours=check.neighbours))
         return {"FINDINGS": float(len(check.found)), "FAULTS": float(len(counts)), "LANES": float(check.lanes),
                 "SUCCESSORS": float(check.successors), "NEIGHBOURS": float(check.neighbours)}
 
@@ -498,8 +492,8 @@ def _is_lanelet2(path):
     with open(path, "rb") as file:
         head = file.read(4096)
     if b"<osm" not in head and b"<OpenDRIVE" not in head:
-        raise RoadExtractionError(
-            tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
+        raise RoadExtractionError(tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.",
+                                     path=path))
     return b"<osm" in head
 
 
@@ -517,7 +511,7 @@ class ExportTemplate(Algorithm):
     def declare(self):
         self.add_input("file", "TEMPLATE", file_filter="CSV (*.csv *.CSV *.tsv *.txt);;All files (*.*)")
         for name in TEMPLATE_LAYERS:
-            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.").format(name=name), optional=True)
+            self.add_map_layer(name, help=tr("Rows with {name} in the column from are about it.", name=name), optional=True)
         self.add_input("file", "OFFICE", optional=True, file_filter="GeoPackage (*.gpkg *.GPKG);;All files (*.*)")
         self.add_input("connection", "CONNECTION", optional=True)
         self.add_input("schema", "SCHEMA", optional=True, of="CONNECTION")
@@ -526,8 +520,8 @@ class ExportTemplate(Algorithm):
     def work(self, call, progress):
         client, schema = products.client_fields, call.value("SCHEMA") or ""
         if bool(schema) != call.given("CONNECTION") or not (schema or call.wants("OUTPUT")):
-            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.").format(
-                output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
+            raise RoadExtractionError(tr("Nothing says where the map goes. Name a file as {output}, or both {connection} and {schema}.",
+                                         output=call.label("OUTPUT"), connection=call.label("CONNECTION"), schema=call.label("SCHEMA")))
         database = client.Database(call.connection("CONNECTION"), schema, call.value("CONNECTION")) if schema else None
         drawing = call.wants("OUTPUT") and str(call.output_path("OUTPUT")).lower().endswith(".dxf")
         office = existing_file(call.file("OFFICE"), call.label("OFFICE")) if call.given("OFFICE") else ""
@@ -540,12 +534,12 @@ class ExportTemplate(Algorithm):
         if not layers:
             raise RoadExtractionError(tr("No layer of the road map was given. Choose at least one of those that the template names."))
         for name in sorted({rule.source for rule in template.rules} - set(layers)):
-            progress.info(tr("{label} was not given: the rows about it are not used.").format(label=call.label(name)))
+            progress.info(tr("{label} was not given: the rows about it are not used.", label=call.label(name)))
         crs = next((features.crs for features in layers.values() if features.crs), "")
         for name, features in layers.items():
             if features.crs and not core.io.crs.same_crs(core.io.crs.parse_crs(features.crs), core.io.crs.parse_crs(crs)):
-                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.").format(
-                    label=call.label(name)))
+                raise RoadExtractionError(tr("{label} is in another CRS than the other layers. Reproject it to theirs and run again.",
+                                             label=call.label(name)))
         made = client.apply_template(template, layers, client.layers_of_client(office, crs, template) if office else None)
         stored = client.apply_template(template, layers, client.layers_of_client(database, crs, template), whole=False).layers if database else {}
         if drawing:
@@ -555,9 +549,9 @@ class ExportTemplate(Algorithm):
         if database:
             client.write_client_layers(stored, database)
         for name, features in made.layers.items():
-            progress.info(tr("{name}: {count:,} features").format(name=name, count=len(features)))
+            progress.info(tr("{name}: {count:,} features", name=name, count=len(features)))
         for what, count in sorted(made.left_out.items()):
-            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.").format(count=count, what=what))
+            progress.warn(tr("No row of the template takes {count} feature(s) of {what}.", count=count, what=what))
         return {"FEATURES": float(sum(map(len, made.layers.values()))), "LAYERS": float(len(made.layers)),
                 "LEFT_OUT": float(sum(made.left_out.values()))}
 
@@ -606,7 +600,7 @@ class ClassifyCloud(Algorithm):
             done += file.count
         for number, count in sorted(counts.items()):
             name = PointClass(number).name.lower().replace("_", " ") if number in set(PointClass) else ""
-            progress.info(tr("Class {number} {name}: {count:,} points").format(number=number, name=name, count=count))
+            progress.info(tr("Class {number} {name}: {count:,} points", number=number, name=name, count=count))
         return {"FILES": float(len(files)), "POINTS": float(done), "ROAD_POINTS": float(counts[PointClass.ROAD_SURFACE]),
                 "PAINT_POINTS": float(counts[PointClass.PAINT]), "CURB_POINTS": float(counts[PointClass.CURB])}
 
@@ -619,6 +613,5 @@ def _copies(call, files):
              for file, path in zip(files, names)]
     twice = next((name for k, name in enumerate(names) if name.lower() in {other.lower() for other in names[:k]}), None)
     if twice:
-        raise RoadExtractionError(
-            tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.").format(name=twice))
+        raise RoadExtractionError(tr("Two of the point clouds would be written to {name}. Rename one, or run once for each folder.", name=twice))
     return [(call.new_file_in("OUTPUT", name), call.new_file_in("UNROLLED", name)) for name in names]

@@ -112,8 +112,8 @@ class SurfaceOfRoad(Algorithm):
             products.surface.model.write_heights(model, call.new_file("DEM"), settings.cell_size, progress.part(0.9, 1.0))
         share = 100 * model.vertices / max(model.points, 1)
         progress.info(tr("{triangles} triangles with {vertices} vertices, {share:.2f} for every hundred points; they miss the ground of the "
-                         "carriageway by {rmse:.1f} mm (root mean square).").format(triangles=len(faces), vertices=model.vertices, share=share,
-                                                                                   rmse=1000 * model.rmse))
+                         "carriageway by {rmse:.1f} mm (root mean square).", triangles=len(faces), vertices=model.vertices, share=share,
+                         rmse=1000 * model.rmse))
         return {"VERTICES": float(model.vertices), "TRIANGLES": float(len(faces)), "RMSE": model.rmse, "SHARE": share}
 
 

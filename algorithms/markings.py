@@ -184,8 +184,8 @@ class ColoursOfPaint(Algorithm):
     def work(self, call, progress):
         markings, lines = (_drawn(call.map_layer(name)) for name in ("MARKINGS", "MARKING_LINES"))
         if not len(markings):
-            raise RoadExtractionError(tr("{label} holds no features, so there is no paint to look at. Choose the layer of a road map.").format(
-                label=call.label("MARKINGS")))
+            raise RoadExtractionError(tr("{label} holds no features, so there is no paint to look at. Choose the layer of a road map.",
+                                         label=call.label("MARKINGS")))
         image = call.raster_in("IMAGE", markings.crs)
         if not image and not call.given("POINT_CLOUDS"):
             raise RoadExtractionError(tr("Nothing shows the colours of the paint. Give point clouds with colours, or an orthoimage."))

@@ -16,9 +16,8 @@ def read_control_point_layer(source, image, crs=""):
     Raises RoadExtractionError if the layer holds lines or polygons, or lacks a field.
     """
     if source.kind in (LINE, POLYGON):
-        raise RoadExtractionError(
-            tr("{label}: the layer holds {kind} geometries. Control points are points, or a table.").format(
-                label=source.label, kind=source.kind_label(source.kind)))
+        raise RoadExtractionError(tr("{label}: the layer holds {kind} geometries. Control points are points, or a table.", label=source.label,
+                                     kind=source.kind_label(source.kind)))
     placed = source.kind == POINT
     rows = [_row(wkb, values, placed) for wkb, values in source.stored_rows()]
     names = [*source.names, *["mapX", "mapY", "mapZ"] * placed]
@@ -56,14 +55,14 @@ class ProposeControlPoints(Algorithm):
         settings = call.settings(PROPOSE_SETTINGS)
         points = _rough_points(call, image, intensity.crs)
         rough = products.overlay.rough_place.rough_place(image, intensity.crs, settings.search, settings.pixel_size, points)
-        progress.info(tr("The image is looked for by {source}.").format(source=rough.source))
+        progress.info(tr("The image is looked for by {source}.", source=rough.source))
         proposal = products.overlay.matching.propose.propose_control_points(image, intensity, rough, settings, progress.part(0.0, 0.95))
         progress.warn_all(proposal.notes)
         values = {"PROPOSED": len(proposal), "ACCEPTED": int(proposal.accepted.sum()), "GROUND_PIXEL": proposal.size, "TURN": proposal.turn_degrees}
         if values["ACCEPTED"]:
             values["RMSE"] = proposal.rmse
-            progress.info(tr("{accepted} of {count} pairs accepted, RMSE {rmse:.3f} m, each left out in turn.").format(
-                accepted=values["ACCEPTED"], count=values["PROPOSED"], rmse=proposal.rmse))
+            progress.info(tr("{accepted} of {count} pairs accepted, RMSE {rmse:.3f} m, each left out in turn.", accepted=values["ACCEPTED"],
+                             count=values["PROPOSED"], rmse=proposal.rmse))
         call.layer("CONTROL_POINTS", proposal.features())
         if call.wants("REPORT"):
             call.text("REPORT", products.report.overlay.proposed_points_report(proposal))
@@ -108,10 +107,10 @@ class GeoreferenceImage(Algorithm):
         result = products.overlay.georeference.georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
         progress.warn_all(result.notes)
         values = _numbers(result)
-        progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
-            count=values["POINTS"], order=result.settings.order, rmse=values["RMSE"], left=result.left_out_rmse))
+        progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.", count=values["POINTS"],
+                         order=result.settings.order, rmse=values["RMSE"], left=result.left_out_rmse))
         if values["CHECK_POINTS"]:
-            progress.info(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+            progress.info(tr("Check points: {count}, RMSE {rmse:.3f} m.", count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
         drawn = call.new_file("OUTPUT")
         departure = products.overlay.georeference.draw_image(result, drawn, progress.part(0.02, 0.97))
         call.layer("RESIDUALS", products.overlay.georeference.residual_vectors(result))
@@ -131,8 +130,8 @@ def _control_points(call, image, progress):
             tr("There are no control points. Choose a layer, or a .points or CSV file."))
     points = products.overlay.control_points.read_control_points(path, image, crs) if path else read_control_point_layer(source, image, crs)
     if crs and not core.io.crs.same_crs(core.io.crs.parse_crs(crs), core.io.crs.parse_crs(points.crs)):
-        progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
-            own=core.io.crs.horizontal_part(core.io.crs.parse_crs(points.crs)).name))
+        progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.",
+                         own=core.io.crs.horizontal_part(core.io.crs.parse_crs(points.crs)).name))
     return points
 
 

@@ -199,7 +199,7 @@ def run_facts(algorithm: Algorithm, survey: str, clouds: Sequence[str], crs: str
     Names of files are without their folders, since a report is handed on.
     """
     files = [Path(path).name for path in clouds]
-    named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more").format(count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
+    named = ", ".join(files[:MOST_FILES]) + (tr(" and {count} more", count=len(files) - MOST_FILES) if len(files) > MOST_FILES else "")
     facts = [(tr("Survey"), survey), (tr("Point clouds"), named), *_inputs(algorithm, provenance.values),
              (tr("CRS"), core.io.crs.parse_crs(crs).name if crs else ""),
              (tr("Made"), f"{provenance.ended:%Y-%m-%d %H:%M} UTC, {provenance.program}"), (tr("Settings"), _settings(algorithm, provenance.values)),

@@ -82,7 +82,8 @@ class DetectCurbs(Algorithm):
         settings = call.settings(CURB_SETTINGS)
         if call.wants("PRINCIPAL_POINTS"):
             call.layer("PRINCIPAL_POINTS", core.road.profiles.detect.find_principal_points(survey, settings, progress.part(0.5, 0.6)))
-        points = core.road.profiles.detect.detect_curbs(survey, settings, progress.part(0.6, 1.0))
+        points = core.road.detect_boundaries.find_curb_points(
+            survey, core.road.detect_boundaries.BoundarySettings("profiles", settings), progress.part(0.6, 1.0))["profiles"]
         call.layer("CURB_POINTS", points.to_features(survey.frame))
 
 

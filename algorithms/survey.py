@@ -29,7 +29,7 @@ class ImportTrajectory(Algorithm):
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given. Set CRS of the trajectory, or, where its coordinates are those of the "
                              "point clouds, CRS to bring it to."))
-        progress.info(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
+        progress.info(tr("Trajectory: {count} positions.", count=f"{len(trajectory):,}"))
         call.layer("OUTPUT", trajectory_features(trajectory))
         return {"ROWS": len(trajectory)}
 
@@ -75,12 +75,12 @@ class InspectSurvey(Algorithm):
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95))
         progress.warn_all(inspection.notes)
         progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
-                        "intensities {darkest} to {brightest}.").format(
-            count=f"{inspection.count:,}", files=len(inspection.files), density=inspection.per_area["mean"], scanners=len(inspection.scanners),
-            darkest=inspection.intensity.nonzero()[0].min(), brightest=inspection.intensity.nonzero()[0].max()))
+                         "intensities {darkest} to {brightest}.", count=f"{inspection.count:,}", files=len(inspection.files),
+                         density=inspection.per_area["mean"], scanners=len(inspection.scanners), darkest=inspection.intensity.nonzero()[0].min(),
+                         brightest=inspection.intensity.nonzero()[0].max()))
         if inspection.near_share is not None:
-            progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
-                near=100 * inspection.near_share, metres=products.inspection.NEAR_TRAJECTORY))
+            progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.", near=100 * inspection.near_share,
+                             metres=products.inspection.NEAR_TRAJECTORY))
         call.text("REPORT", products.report.survey.inspection_report(inspection))
         if call.wants("DENSITY"):
             products.inspection.write_density(inspection, call.new_file("DENSITY"))
@@ -126,7 +126,7 @@ class SampleSurvey(Algorithm):
         if call.wants("UAV_IMAGE") or call.wants("UAV_GCPS"):
             simulator.orthophoto.seen_from_above(survey)
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
-        progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
+        progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.", count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
             simulator.orthophoto.write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
         if call.wants("UAV_GCPS"):

@@ -39,9 +39,9 @@ def cloud_files(given: Iterable[str], label: str) -> list[str]:
         if path.is_file():
             files += _clouds([path], "") if path.suffix.lower() == VIRTUAL else [name]
         elif path.is_dir():
-            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.").format(label=label, name=name))
+            files += _clouds(path.iterdir(), tr("{label}: the folder {name} holds no LAS or LAZ file.", label=label, name=name))
         elif has_magic(name):
-            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.").format(label=label, name=name))
+            files += _clouds(map(Path, glob(name)), tr("{label}: no LAS or LAZ file is called {name}.", label=label, name=name))
         else:
             files.append(name)
     return list(dict.fromkeys(files))
@@ -81,10 +81,10 @@ def _named_by(path):
         names = []
     if not names:
         raise RoadExtractionError(tr("{path} names no point clouds as a virtual point cloud does. Make it again in QGIS, or choose the LAS and LAZ "
-                                     "files themselves.").format(path=path))
+                                     "files themselves.", path=path))
     if remote := [name for name in names if "://" in name or name.lower().startswith("/vsi")]:
-        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.").format(
-            path=path, name=remote[0]))
+        raise RoadExtractionError(tr("{path} names {name} on a server, and nothing is fetched. Download the files and choose them.", path=path,
+                                     name=remote[0]))
     return [os.path.normpath(os.path.join(os.path.dirname(path), name)) for name in names]
 
 
@@ -134,8 +134,7 @@ def read_trajectory_source(source, crs="", heights_needed=True):
 
 def _refuse_empty(source, count):
     if not count:
-        raise RoadExtractionError(
-            tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=source.label))
+        raise RoadExtractionError(tr("{label} has no rows. Choose the layer that holds the driven positions.", label=source.label))
 
 
 def _line_columns(source):
@@ -230,7 +229,7 @@ def open_survey_with(call, layers, progress, **reading):
     """The survey as of `open_survey_of`, on whose roads and in whose CRS the layers lie; of `layers`, those without features become None."""
     for name, features in layers.items():
         if features is not None and not len(features):
-            progress.warn(tr("{label} holds no features and is not used.").format(label=call.label(name)))
+            progress.warn(tr("{label} holds no features and is not used.", label=call.label(name)))
             layers[name] = None
     survey = open_survey_of(call, progress, **reading)
     for name, features in layers.items():
@@ -301,9 +300,8 @@ def bright_road_points_of(call, name, progress):
     sections = (road_points.section(*key).intensity for key in road_points.all_sections())
     values = [(section.min(), section.max()) for section in sections if len(section)]
     if values and min(low for low, _ in values) == max(high for _, high in values):
-        raise RoadExtractionError(
-            tr("{path} has no intensity (all values are the same), so it shows no paint. Export the point clouds with intensity, or make the points "
-               "again with INTENSITY_FROM set to rgb.").format(path=call.cloud(name)))
+        raise RoadExtractionError(tr("{path} has no intensity (all values are the same), so it shows no paint. Export the point clouds with "
+                                     "intensity, or make the points again with INTENSITY_FROM set to rgb.", path=call.cloud(name)))
     return road_points
 
 
@@ -316,7 +314,7 @@ def paint_of(call, name, progress):
         crs = core.survey.las.reader.cloud_crs(reader.header)
         points = core.survey.store.road_points.RoadPoints.empty_like(origin=reader.header.offsets, crs=crs)
         points.has_corrected, points.has_cluster = "intensity_corrected" in columns, "cluster" in columns
-        progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
+        progress.warn(tr("{label} holds no points: no paint was found on this road.", label=call.label(name)))
         return points
 
 
@@ -355,8 +353,8 @@ def read_corrections(source):
     index = {name.lower(): k for k, name in enumerate(source.names)}
     missing = [name for name in NEEDED if name not in index]
     if missing:
-        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or "
-                                     "give it the fields action and target.").format(label=source.label, fields=", ".join(missing)))
+        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or give "
+                                     "it the fields action and target.", label=source.label, fields=", ".join(missing)))
     columns = [column for column in CORRECTIONS if column.name in index]
     result = Features("any", list(CORRECTIONS), crs=source.crs)
     for wkb, values in source.rows(check_validity=False):

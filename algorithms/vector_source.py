@@ -67,9 +67,9 @@ def _checked(source, rows):
     problems.update((drawn[k], tr("coordinates that lie nowhere on earth")) for k in np.unique(owner[wrong]).tolist())
     if problems:
         first = min(problems)
-        raise RoadExtractionError(
-            tr("{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair or delete "
-               "them.").format(label=source.label, count=len(problems), total=len(read), problem=problems[first], id=ids[first]))
+        raise RoadExtractionError(tr("{label} cannot be used: {count} of its {total} features have {problem}, the first of them feature {id}. Repair "
+                                     "or delete them.", label=source.label, count=len(problems), total=len(read), problem=problems[first],
+                                     id=ids[first]))
     return iter(read)
 
 
@@ -78,10 +78,8 @@ def _value(column, value, label):
     try:
         return column.type(value)
     except (TypeError, ValueError, OverflowError):
-        raise RoadExtractionError(
-            tr("{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.").format(
-                label=label, value=value, field=column.name)
-        ) from None
+        raise RoadExtractionError(tr("{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.",
+                                     label=label, value=value, field=column.name)) from None
 
 
 def read_features(source, schema, geometry_type):
@@ -93,9 +91,8 @@ def read_features(source, schema, geometry_type):
     indices = _columns(source, schema)
     needed = KIND_OF[geometry_type]
     if geometry_type != "None" and source.kind != needed:   # a layer that another stage made
-        raise RoadExtractionError(
-            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
+        raise RoadExtractionError(tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.",
+                                     label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)))
     measured = geometry_type.endswith("ZM")
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
@@ -113,9 +110,7 @@ def read_features(source, schema, geometry_type):
             continue
         for part in shapely.get_parts(shapely.from_wkb(wkb)):
             if not part.has_z or np.isnan(shapely.get_coordinates(part, include_z=True)).any():
-                raise RoadExtractionError(
-                    tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
-                        label=source.label))
+                raise RoadExtractionError(tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.", label=source.label))
             result.add(part, **row)
     return result
 
@@ -127,9 +122,8 @@ def _columns(source, schema):
     indices = [index_by_name.get(column.name, index_by_name.get(column.name.lower())) for column in schema]
     missing = [column.name for column, k in zip(schema, indices) if k is None and column.needed]
     if missing:
-        raise RoadExtractionError(
-            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=source.label, fields=", ".join(missing)))
+        raise RoadExtractionError(tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.", label=source.label,
+                                     fields=", ".join(missing)))
     return indices
 
 
@@ -137,8 +131,7 @@ def _measured_parts(wkb, label):
     """WKB of every part of a line geometry with Z and M: shapely before 2.1 would lose the M."""
     _, has_z, has_m = _type_of(wkb, 0)
     if not (has_z and has_m):
-        raise RoadExtractionError(
-            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label))
+        raise RoadExtractionError(tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.", label=label))
     for first_byte, count, *_ in _runs(wkb):
         yield wkb[first_byte - 9:first_byte + 32 * count]   # with its byte order, type and count
 

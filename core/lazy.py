@@ -19,7 +19,9 @@ class LazyModule:
         self._name = name
 
     def __getattr__(self, attribute: str) -> Any:
-        return getattr(import_module(self._name), attribute)
+        # asked once for each name: what is known of an object is no longer asked here
+        value = self.__dict__[attribute] = getattr(import_module(self._name), attribute)
+        return value
 
 
 cv2: Any = LazyModule("cv2")

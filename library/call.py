@@ -11,6 +11,7 @@ from ..algorithms.algorithm import choice_refused, number_refused
 from ..algorithms.call import Call, existing_file
 from ..algorithms.destinations import destination_path
 from ..algorithms.provenance import provenance_now
+from ..algorithms.rooms import core
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import gdal_exceptions, open_raster
 from .layer_files import DRIVERS, LayerFile, check_format, check_gdal, file_and_table, first_table, write_layer
@@ -44,11 +45,9 @@ class FileCall(Call):
         return self.parameters.get(name, self.algorithm.parameter(name).default)
 
     def crs(self, name="CRS"):
-        from ..core.io.crs import in_metres, parse_crs
-
         text = self.value(name)
         try:
-            return in_metres(parse_crs(text).to_wkt())[0] if text else ""
+            return core.io.crs.in_metres(core.io.crs.parse_crs(text).to_wkt())[0] if text else ""
         except RoadExtractionError as problem:
             raise RoadExtractionError(f"{self.label(name)}: the CRS {text} is not known. Give it as EPSG:number.") from problem
 
@@ -92,18 +91,11 @@ class FileCall(Call):
         return self.parameters[name]
 
     def read_as(self, value, path):
-        if not path.exists():
-            return ""
-        _, table = file_and_table(value)
-        for spec in self.algorithm.inputs():
-            inputs = self.parameters.get(spec.name)
-            for name in inputs if isinstance(inputs, list) else [inputs]:
-                if not isinstance(name, str):
-                    continue
-                source, read = file_and_table(name)
-                if Path(source).is_file() and os.path.samefile(path, source) and (not table or table == (read or first_table(source))):
-                    return spec.label
-        return ""
+        table, given = file_and_table(value)[1], ((spec.label, self.parameters.get(spec.name)) for spec in self.algorithm.inputs())
+        inputs = ((label, *file_and_table(name)) for label, names in given for name in (names if isinstance(names, list) else [names])
+                  if isinstance(name, str))
+        return next((label for label, source, read in inputs if path.exists() and Path(source).is_file() and os.path.samefile(path, source)
+                     and (not table or table == (read or first_table(source)))), "")
 
     def finish(self, numbers):
         """Write the layers beside their destinations, then give all results their names."""

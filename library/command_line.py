@@ -91,7 +91,7 @@ def demo(options, as_json):
     """`lanewright demo FOLDER`: a simulated street, its road map, and how far the driving lines are from the true ones."""
     parser = Parser(prog="lanewright demo", description=tr("A simulated street, its road map with a report, and how far the driving lines are from "
                                                            "the true ones: files in a folder to look at and to try things on."))
-    parser.add_argument("folder", metavar="FOLDER", nargs="?", default="lanewright_demo", help=tr("default {value}").format(value="lanewright_demo"))
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", default="lanewright_demo", help=tr("default {value}", value="lanewright_demo"))
     folder = Path(parser.parse_args(options).folder)
     with suppress(OSError):  # the first run says why nothing can be written
         folder.mkdir(parents=True, exist_ok=True)
@@ -150,11 +150,11 @@ def explained(spec):
     if not spec.is_output:
         if spec.default not in (None, ""):
             value = str(spec.default).lower() if isinstance(spec.default, bool) else spec.default
-            notes.append(tr("default {value}").format(value=value))
+            notes.append(tr("default {value}", value=value))
         elif not spec.optional:
             notes.append(tr("necessary"))
         if spec.kind in ("whole", "number"):
-            notes.append(tr("{low:g} to {high:g}").format(low=spec.limits()[0], high=spec.limits()[1]))
+            notes.append(tr("{low:g} to {high:g}", low=spec.limits()[0], high=spec.limits()[1]))
     elif not spec.optional:
         notes.append(tr("necessary"))
     return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
@@ -191,7 +191,7 @@ class TextProgress(Progress):
         self._write(told(text))
 
     def warn(self, text):
-        self._write(tr("Warning: {text}").format(text=told(text)))
+        self._write(tr("Warning: {text}", text=told(text)))
 
     def _write(self, text):
         print(text, file=self.stream, flush=True)

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ..algorithms.destinations import package_and_table
+from ..algorithms.rooms import core
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import RoadExtractionError
 from ..core.io.local_files import OFFLINE, VECTOR_DRIVERS, check_crs_of_geojson, gdal_exceptions, open_vector
@@ -20,14 +21,12 @@ COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
 
 def _shape(geometry):
     """A geometry of fiona as shapely has it; lines and areas by arrays, whose coordinates shapely does not look at one by one."""
-    from shapely.geometry import LineString, Polygon, shape
-
     if geometry.type == "LineString":
-        return LineString(np.array(geometry.coordinates))
+        return shapely.LineString(np.array(geometry.coordinates))
     if geometry.type == "Polygon" and geometry.coordinates:
         outline, *holes = (np.array(ring) for ring in geometry.coordinates)
-        return Polygon(outline, holes)
-    return shape(geometry)
+        return shapely.Polygon(outline, holes)
+    return shapely.geometry.shape(geometry)
 
 
 def file_and_table(value):
@@ -148,9 +147,7 @@ def _reported_errors():
 
 def _crs_text(wkt):
     """WKT, "" for the entries that GeoPackage has for layers without a CRS."""
-    from ..core.io.crs import parse_crs
-
-    return wkt if wkt and not parse_crs(wkt).name.lower().startswith("undefined ") else ""
+    return wkt if wkt and not core.io.crs.parse_crs(wkt).name.lower().startswith("undefined ") else ""
 
 
 def write_layer(path, table, features, check_cancelled):
@@ -175,13 +172,11 @@ def write_layer(path, table, features, check_cancelled):
 
 
 def _records_of(features, check_cancelled):
-    from shapely.geometry import mapping
-
     names = [field.name for field in features.schema]
     for number, (geometry, row) in enumerate(features):
         if number % 5000 == 0:
             check_cancelled()
-        yield {"geometry": None if geometry is None else mapping(geometry),
+        yield {"geometry": None if geometry is None else shapely.geometry.mapping(geometry),
                "properties": {name: plain_value(row.get(name)) for name in names}}
 
 

@@ -211,8 +211,8 @@ def no_trajectory(declaration, parameters):
         value = parameters.get(spec.name)
         if spec.kind == "trajectory" and isinstance(value, str) and os.path.isfile(value) and trajectory_path(value) is None \
                 and not QgsVectorLayer(value).isValid():
-            return tr("{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the "
-                      "drive.").format(label=spec.label, file=value)
+            return tr("{label}: {file} holds neither a layer nor a table of positions. Choose the layer or the CSV, TXT or SBET file of the drive.",
+                      label=spec.label, file=value)
     return ""
 
 

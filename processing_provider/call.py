@@ -32,6 +32,7 @@ from qgis.PyQt.QtCore import QDate, QDateTime, QMetaType, Qt, QTime
 
 from ..algorithms.call import Call, existing_file, time_left
 from ..algorithms.destinations import at_path, destination_path
+from ..algorithms.rooms import core
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, crs_to_write, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
 from ..core.common.progress import Progress, RemainingTime
@@ -147,9 +148,8 @@ def write_features(sink, features, fields, feedback=None):
         if feedback is not None and feedback.isCanceled():
             raise Cancelled
         if not sink.addFeatures(batch, QgsFeatureSink.Flag.FastInsert):
-            raise RoadExtractionError(
-                tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
-                    reason=sink.lastError() or tr("the sink refused the features")))
+            raise RoadExtractionError(tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?",
+                                         reason=sink.lastError() or tr("the sink refused the features")))
     # Absent on QGIS 3.40, needed from 3.44 on
     if hasattr(sink, "finalize"):
         sink.finalize()
@@ -192,20 +192,17 @@ class QgisCall(Call):
 
     def crs(self, name="CRS"):
         """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
-        from ..core.io.crs import in_metres
-
         crs = self.processing.parameterAsCrs(self.parameters, name, self.context)
         text = self.parameters.get(name)
         if isinstance(text, str) and text and not crs.isValid():
-            raise RoadExtractionError(
-                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=text))
-        return in_metres(crs_text(crs))[0]
+            raise RoadExtractionError(tr("{label}: the CRS {given} is not known. Give it as EPSG:number.", label=self.label(name), given=text))
+        return core.io.crs.in_metres(crs_text(crs))[0]
 
     def connection(self, name):
         kept, chosen = QgsProviderRegistry.instance().providerMetadata("postgres").dbConnections(False), self.value(name)
         if chosen not in kept:
-            raise RoadExtractionError(tr("{label}: QGIS keeps no connection {name} to PostgreSQL. It keeps: {known}.").format(
-                label=self.label(name), name=chosen, known=", ".join(sorted(kept)) or "-"))
+            raise RoadExtractionError(tr("{label}: QGIS keeps no connection {name} to PostgreSQL. It keeps: {known}.", label=self.label(name),
+                                         name=chosen, known=", ".join(sorted(kept)) or "-"))
         return QgsDataSourceUri(kept[chosen].uri()).connectionInfo(True)
 
     def raster(self, name):
@@ -228,9 +225,8 @@ class QgisCall(Call):
     def painted(self, name):
         layer = self.processing.parameterAsLayer(self.parameters, name, self.context)
         if layer is None:
-            raise QgsProcessingException(
-                tr("{label}: {value} cannot be opened as a layer. Check the name and the folder.").format(
-                    label=self.label(name), value=self.parameters.get(name)))
+            raise QgsProcessingException(tr("{label}: {value} cannot be opened as a layer. Check the name and the folder.", label=self.label(name),
+                                            value=self.parameters.get(name)))
         if isinstance(layer, QgsRasterLayer):
             return None, existing_file(layer.source(), self.label(name)), crs_text(layer.crs())
         return QgisSource(layer, self.label(name)), "", ""
@@ -248,8 +244,8 @@ class QgisCall(Call):
             empty = feature.geometry().isNull() or feature.geometry().isEmpty()
             holds.append(not empty and bool(expression.evaluate(scope)))
         if not usable or expression.hasEvalError():
-            raise RoadExtractionError(tr("{label} cannot be used: {problem}").format(
-                label=self.label(name), problem=expression.parserErrorString() or expression.evalErrorString()))
+            raise RoadExtractionError(tr("{label} cannot be used: {problem}", label=self.label(name),
+                                         problem=expression.parserErrorString() or expression.evalErrorString()))
         return holds
 
     def layer_name(self, name):
@@ -456,5 +452,5 @@ def add_tables(written, path):
             gdal.VectorTranslate(target, str(written), accessMode="overwrite", options=["-preserve_fid", "-gt", "unlimited"])
             target = None
     except RuntimeError as problem:
-        raise RoadExtractionError(
-            tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(reason=problem)) from problem
+        raise RoadExtractionError(tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?",
+                                     reason=problem)) from problem

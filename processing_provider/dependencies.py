@@ -26,7 +26,7 @@ LIMITS = {"shapely": '"shapely>=2"', "cv2": '"opencv-python-headless<4.12"'}   #
 def missing_packages():
     """One sentence naming what is missing or too old, and the way on; "" when everything is there."""
     missing = missing_in_short()
-    return missing and tr("{missing} To install: {command}{where}. Then start QGIS again.").format(
+    return missing and tr("{missing} To install: {command}{where}. Then start QGIS again.",
         missing=missing, command=install_command(), where=_where())
 
 
@@ -34,10 +34,10 @@ def missing_in_short():
     """What is missing or too old, in a few words; "" when everything is there."""
     names = _missing()
     if names:
-        return tr("Missing Python package(s): {names}.").format(names=", ".join(NEEDED[name] for name in names))
+        return tr("Missing Python package(s): {names}.", names=", ".join(NEEDED[name] for name in names))
     version = _shapely_version()
     if int(version.split(".")[0]) < OLDEST_SHAPELY:
-        return tr("shapely {version} is installed and version 2 or newer is needed.").format(version=version)
+        return tr("shapely {version} is installed and version 2 or newer is needed.", version=version)
     return ""
 
 

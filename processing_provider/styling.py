@@ -45,11 +45,8 @@ from .results.road_maps import GROUP, describe_origin, place_layer
 from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
-# Unit at the end of a field's name -> decimals that mean something
-DECIMALS = {"m": 2, "cm": 1, "m2": 2, "ft": 2, "deg": 2, "pct": 1, "x": 3, "y": 3}
-DECIMALS_OF = {"rmse_m": 3, "sigma_m": 3, "sigma_z_m": 3, "pass_sig_m": 3,  # nosec B105: a pass over a road, no password
-               "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2, "time": 3,
-               "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
+# Decimals that mean something, what a feature is, in expressions of QGIS whose fields stand in quotes, and the colours of its values
+DECIMALS, DECIMALS_OF, TITLES, STATUS, RANGES = json.loads((STYLES / "fields.json").read_text(encoding="utf-8")).values()
 MOST_DECIMALS = 2  # of any other number
 MARGIN, LETTER = 40, 8  # pixels of a column of the attribute table: beside its heading, and for each letter of it
 
@@ -61,20 +58,6 @@ WORDS = {field: {value: tr(vocabulary().get(f"{field}.{value}") or vocabulary()[
 }.items()}
 LINE_KINDS = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
-
-# Result -> what a feature is, in an expression of QGIS; fields are named in quotes
-TITLES = {
-    "ROAD_EDGES": '{edge}, {side}, {length}, {status}, {sigma}',
-    "BOUNDARIES": '{edge}, {side}, {length}, {status}, {sigma}',
-    "MARKING_LINES": '{line}, {pattern}, {length}, {status}',
-    "DRIVING_LINES": '{lane}, {direction}, {length}, {status}, {sigma}',
-    "LANES": '{lane}, {direction}, {length}, {status}',
-    "MARKINGS": '{class}, {length}',
-    "ROAD_SURFACE": '{surface}, {status}',
-    "PASSES": '{pass}, {direction}, {length}',
-    "CORRECTIONS": '{action}, {target}, {note}',
-    "CURB_POINTS": '{curb_point}, {side}, {height}, {status}',
-}
 
 
 def _in_words(field):
@@ -151,7 +134,7 @@ def second_reading(other: str) -> str:
     """A value of the field `other` in words."""
     try:
         reading = json.loads(other)
-        lanes = [tr("a lane of {width:.1f} m {direction}").format(width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
+        lanes = [tr("a lane of {width:.1f} m {direction}", width=float(lane["width_m"]), direction=DIRECTIONS[lane["direction"]])
                  for lane in reading.get("lanes", ())]
         if lanes:
             return ", ".join(lanes)
@@ -300,12 +283,6 @@ def style_on_load(name, dest, title, context, schema=(), run=None):
 
 # Looks of a layer: the road plan at first; by class, by status, by confidence and by uncertainty to switch to.
 
-STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"),
-          ("accepted", "#4393c3"), ("drawn", "#2166ac"))
-RANGES = {"confidence": [(low, high, colour, f"{low:g} – {high:g}") for low, high, colour in (
-              (0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))],
-          "sigma_m": [(low, high, colour, f"{100 * low:g} – {100 * high:g} cm" if high < 100 else f"> {100 * low:g} cm") for low, high, colour in (
-              (0.0, 0.02, "#1a9850"), (0.02, 0.05, "#a6d96a"), (0.05, 0.15, "#fdae61"), (0.15, 100.0, "#d73027"))]}   # m, one sigma
 LINE_WIDTH = 0.7  # mm
 
 
@@ -359,7 +336,7 @@ def _keep_style(manager, name, layer):
 def _by_status(layer, field):
     statuses = layer.uniqueValues(layer.fields().lookupField(field))
     return QgsCategorizedSymbolRenderer(field, [QgsRendererCategory(value, _symbol(layer, colour), WORDS[field][value])
-                                                for value, colour in STATUS if value in statuses or not statuses])
+                                                for value, colour in STATUS.items() if value in statuses or not statuses])
 
 
 def _by_ranges(layer, field):

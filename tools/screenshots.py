@@ -70,7 +70,7 @@ def columns():
     window.show()
     wait(1.5)
     widget = window.mainWidget().wrappers["COLUMNS"].widget
-    needed(len(widget.boxes) == 7 and "4,000" in widget.message.text(), f"the columns are not shown: {widget.message.text()}")
+    needed(len(widget.boxes) == 7 and "000 " in widget.message.text(), f"the columns are not shown: {widget.message.text()}")
     keep(window, "window_columns")
     window.close()
 

@@ -26,9 +26,10 @@ def set_translation(translate: Callable[[str], str] | None, tell: Callable[[str]
     _translate, _tell, _language = translate, tell, language
 
 
-def tr(text: str) -> str:
-    """A text as it stands in the code, in the user's language."""
-    return text if _translate is None else _translate(text)
+def tr(text: str, /, **values: Any) -> str:
+    """A text as it stands in the code, in the user's language, with values filled in where there are any."""
+    translated = text if _translate is None else _translate(text)
+    return translated.format(**values) if values else translated
 
 
 def told(sentence: str) -> str:

@@ -23,9 +23,10 @@ from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..lazy import cv2
 from ..survey.consistency import sample_road_points
 from ..survey.frame.road_frame import RoadFrame
+from ..survey.store.array_file import SharedArrays
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
-from .tiled_image import TiledImage
+from .tiled_image import StoredTile, TiledImage, stored_tiles
 from .weights import IMAGE
 
 # Inverse distance weighting on the map's lattice of cells: every point weighs on all cells within the search radius.
@@ -204,7 +205,6 @@ MAX_TILES = 2**24       # source: of an image, most of them empty: GDAL keeps 16
 
 PIECE_LENGTH = IMAGE.ranking_window / IMAGE.pieces_per_window
 Tile = tuple[int, int]   # column and row of tiles
-FilledTile = tuple[int, int, np.ndarray]   # column and row of the first of the (H, W) float32 pixels of a tile about those with data, and these
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
     if pieces is None:
         pieces, = in_step([pieces_of_image(road_points, settings)], road_points.executor, progress.part(0.0, 0.3))
     grid, work = _grid_of(pieces, settings)
-    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, road_points.executor.folder)
+    image = TiledImage(grid.geotransform, grid.width, grid.height, road_points.crs, SharedArrays(road_points.executor.folder))
     states = {window: road_points.state(*_span(IMAGE.ranking_window, *window)) for window in dict.fromkeys(piece.window for piece in pieces)}
     image.pieces = {piece: digest((settings, piece, states[piece.window])) for piece in pieces}   # most touch several tiles
     image.places = np.array([(piece.road, piece.number, *piece.extent, *piece.across) for piece in image.pieces], np.int64)
@@ -246,14 +246,14 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
         # a few are made before workers would have started
         executor = THREADS if 2 * len(new) < len(work) else road_points.executor
         tasks = [new[k:k + IMAGE.tiles_per_task] for k in range(0, len(new), IMAGE.tiles_per_task)]
-        phase = Phase(tiles_of_image, road_points, (settings, grid), lambda task: road_points.survey.stretch(
+        phase = Phase(tiles_of_image, road_points, (settings, grid, image.arrays), lambda task: road_points.survey.stretch(
             *_span(PIECE_LENGTH, task[0][1][0].road, task[0][1][0].number)),
                       state=(lambda task: [image.states[tile] for tile, _ in task]) if executor.folder else None)   # in memory lie the pixels already
         for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
-            for tile in filter(None, tiles):
-                image.put(*tile)
-                if file is not None:
-                    file.write(*tile, whole=True)
+            image.add(tiles)
+            for column, row, *shape, place in tiles if file is not None else ():
+                pixels = image.arrays.get(place, shape)
+                file.write(column, row, np.where(np.isnan(pixels), np.float32(NODATA), pixels), whole=True)
     progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 
@@ -368,8 +368,9 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     return max(int(len(points) * settings.cell_size**2 / (PIECE_LENGTH * width) / IMAGE.far_points_per_cell), 1)
 
 
-def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid) -> list[FilledTile | None]:
-    """The phase that makes tiles, None where one has no data; a piece that some of them share is interpolated once."""
+def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]]], settings: ImageSettings, grid: _Grid,
+                   arrays: SharedArrays) -> list[StoredTile]:
+    """The phase that makes tiles and writes those with data; a piece that some of them share is interpolated once."""
     sums: dict[_Piece, _WeightedSums] = {}
     limits: dict[tuple[int, int], list[float]] = {}
     result = []
@@ -381,7 +382,7 @@ def tiles_of_image(road_points: RoadPoints, tiles: list[tuple[Tile, list[_Piece]
             if piece not in sums:
                 sums[piece] = _sums_of_piece(road_points, piece, settings, *limits[piece.window])
         result.append(grid.tile(*tile, [sums[piece] for piece in pieces]))
-    return result
+    return stored_tiles(arrays, result)
 
 
 def _sums_of_piece(road_points, piece, settings, low, high):
@@ -414,19 +415,14 @@ class _Grid:
         """Height and width of one tile."""
         return min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
 
-    def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> FilledTile | None:
-        """What is filled of one tile, from the sums that touch it; None where it has no data."""
+    def tile(self, column: int, row: int, parts: Iterable[_WeightedSums]) -> tuple[int, int, np.ndarray]:
+        """First column and row of one tile, and its pixels from the sums that touch it."""
         shape = self.shape_of(column, row)
         whole = _WeightedSums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, *np.zeros((2, *shape), np.float32))
         for part in parts:
             part.add_to(whole)
-        filled = whole.weights > 0
-        rows, columns = (np.flatnonzero(filled.any(axis=axis)) for axis in (1, 0))
-        if not len(rows):
-            return None
-        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        values = np.divide(whole.total[box], whole.weights[box], out=np.full(filled[box].shape, np.float32(NODATA)), where=filled[box])
-        return column * GEOTIFF_TILE + int(columns[0]), row * GEOTIFF_TILE + int(rows[0]), values
+        return column * GEOTIFF_TILE, row * GEOTIFF_TILE, np.divide(
+            whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=whole.weights > 0)
 
 
 def state_about(image: TiledImage, frame: RoadFrame, road: int, start: float, end: float) -> list[Any]:

@@ -26,7 +26,7 @@ from .common.sides import SIDE_SIGNS
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
-from .profiles.detect import detect_curbs, profiles_of, steps_of_section, tell_points
+from .profiles.detect import profiles_of, steps_of_section, tell_points
 from .scanlines.candidates import ScanlineBoundarySettings
 from .scanlines.detect import SurveyScanlines, corners_of_section, planes_of, tell_corners, with_scanner_noise
 from .scanlines.section_planes import ScanlineSettings
@@ -84,39 +84,38 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     Returns {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs as each sees them alone, and "both" those of the best path through the chains of the two. Corners, side streets
-    and islands are found in plan, once, and belong to the curbs that are drawn.
+    and islands are found in plan, once, and belong to the curbs that are drawn. Points of status `measured` are vertices of the road
+    edge; those of status `bridged` lie on the line across a lowered curb, and those of status `occluded` where something hides the curb.
     """
-    if settings.method == "profiles":
-        return {"profiles": detect_curbs(survey, settings.curbs, progress, ground)}
     kept_ground, ground = ground, ground or MeasuredGround(survey)
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as decimation:
-        part = progress.part(0.0, BOUNDARY.lattice_progress)
-        # a later stage looks for edges of the pavement in the profiles of a ground that is kept
-        lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
-                             survey.executor, part)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice,
-                                 decimation=decimation if settings.method == "both" else None)
-        searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length)}
-        if settings.method == "both":
-            searches["profiles"] = profiles_of(decimation, settings.curbs)
+        source: Any = decimation
+        searches = {} if settings.method == "scanlines" else {"profiles": profiles_of(decimation, settings.curbs)}
+        if settings.method != "profiles":
+            part = progress.part(0.0, BOUNDARY.lattice_progress)
+            # a later stage looks for edges of the pavement in the profiles of a ground that is kept
+            lattice, _ = in_step([lattice_of(survey, settings.planes.rotation_frequency, part), ground.measured_all(kept_ground is not None)],
+                                 survey.executor, part)
+            source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, lattice, decimation=decimation)
+            searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length), **searches}
         steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
                                                   progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
         points = curbs_along(source, steps, partial(RoadLook, ground))
-        tell_corners(points["scanlines"], progress)
-        if settings.method == "both":
-            tell_points(points["profiles"], progress)
-        beside = grids_beside(steps["profiles" if settings.method == "both" else "scanlines"])
+        for method, tell in (("scanlines", tell_corners), ("profiles", tell_points)):
+            if method in points:
+                tell(points[method], progress)
+        beside = grids_beside(steps["profiles" if "profiles" in steps else "scanlines"])
         points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs,
                                                     progress.part(BOUNDARY.returns_progress, 1.0), beside, ground)
         return points
 
 
-def _steps_of_methods(source: SurveyScanlines, section: Section, scanlines: ScanlineBoundarySettings,
+def _steps_of_methods(source: SurveyScanlines | PointDecimation, section: Section, scanlines: ScanlineBoundarySettings,
                      profiles: CurbSettings) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
     """The phase of both methods: what `steps_of_section` or `corners_of_section` finds, by the method of the section."""
-    if section[0] == "scanlines" or source.decimation is None:
-        return corners_of_section(source, section, scanlines)
-    return steps_of_section(source.decimation, section, profiles)
+    if isinstance(source, PointDecimation):
+        return steps_of_section(source, section, profiles)
+    return corners_of_section(source, section, scanlines) if section[0] == "scanlines" else steps_of_section(source.decimation, section, profiles)
 
 
 def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

@@ -69,11 +69,11 @@ class CURBS:
     stretch_length: float = 5.0   # m of road that are read together
     decimation_block_points: int = 256_000   # points that are decided together
     joined_points: int = 60_000   # points below which those of one stretch and the next are yielded together
-    decimation_locks: int = 16   # locks that stretches share while they are decided; the last one is the file's
+    decimation_locks: int = 16   # locks that stretches share while they are decided
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
     thin_width: float = 2.0   # m across in which points are densest: beside the track
-    thin_density: float = 250.0   # points per m² of ground there, below which more of the road is looked at together: 350 and more of whole surveys
+    thin_density: float = 320.0   # points per m² of ground there, below which more of the road is looked at together: whole surveys had 348 and more
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
@@ -169,7 +169,6 @@ class PROFILE:
     """How steps are found on profiles."""
 
     min_track_distance: float = 0.6   # m from the track: no curb is nearer
-    main_curb_progress: float = 0.6   # share of the work
     # single profiles
     max_rise_width: float = 0.15   # m across within which the whole rise must lie
     min_raised_cells: int = 3   # cells of raised ground behind a rise that a statement about its height needs

@@ -29,6 +29,7 @@ from qgis.PyQt import sip
 
 from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.provenance import Provenance, signed_by
+from ...algorithms.rooms import products
 from ...algorithms.survey_input import cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ..texts import tr
@@ -459,8 +460,4 @@ def run_tables() -> list[tuple[str, list[str], list[list[Any]]]]:
 
 def run_table() -> str:
     """An HTML page with these tables; "" where there was no run."""
-    if not _runs:
-        return ""
-    from ...products.report.page import html_page
-
-    return html_page("runs", tables=run_tables())
+    return products.report.page.html_page("runs", tables=run_tables()) if _runs else ""

@@ -126,10 +126,10 @@ def _error_along_road(station, error, weights, along):
     largest = np.full(count, np.nan)
     np.fmax.at(largest, number, size)
     rms = np.where(np.isfinite(largest), 100 * np.sqrt(mean), np.nan)
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * 100 * np.nanmax(largest)), tr("along {what} (m)").format(what=along), "cm")
+    chart = Chart((edges[0], edges[-1]), (0, 1.05 * 100 * np.nanmax(largest)), tr("along {what} (m)", what=along), "cm")
     chart.bars(edges[:-1], edges[1:], rms, BAR_COLOUR, title="RMSE")
     chart.curve(np.repeat(edges, 2)[1:-1], np.repeat(100 * largest, 2), CURVE_COLOUR, tr("largest"))
-    return chart.svg(), tr("The lateral error along {what}: bars are the RMSE of every {bin:.0f} m, the line is the largest.").format(
+    return chart.svg(), tr("The lateral error along {what}: bars are the RMSE of every {bin:.0f} m, the line is the largest.",
         what=along, bin=edges[1] - edges[0])
 
 
@@ -144,7 +144,7 @@ def _error_histogram(error, weights, signed):
     share = 100 * np.histogram(np.clip(error, edges[0], edges[-1]), edges, weights=weights)[0] / weights.sum()
     chart = Chart((edges[0], edges[-1]), (0, 1.08 * share.max()), tr("lateral error (cm)"), tr("% of the length"))
     chart.bars(edges[:-1], edges[1:], share, BAR_COLOUR)
-    return chart.svg(), tr("Lateral error, {signed}; what lies farther out is counted in the outermost bars.").format(signed=signed)
+    return chart.svg(), tr("Lateral error, {signed}; what lies farther out is counted in the outermost bars.", signed=signed)
 
 
 def _outcomes_along_road(stations: Mapping[str, np.ndarray], lengths: Mapping[str, np.ndarray], along: str, unit: str) -> tuple[str, str]:
@@ -159,12 +159,12 @@ def _outcomes_along_road(stations: Mapping[str, np.ndarray], lengths: Mapping[st
         number = np.clip(np.searchsorted(edges, stations[name][finite], side="right") - 1, 0, count - 1)
         amounts[name] = np.bincount(number, lengths[name][finite], count)
         total = total + amounts[name]
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), tr("along {what} (m)").format(what=along), unit)
+    chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), tr("along {what} (m)", what=along), unit)
     base = np.zeros(count)
     for name in OUTCOME_COLOURS:
         if name in amounts:
             base = chart.bars(edges[:-1], edges[1:], amounts[name], OUTCOME_COLOURS[name], base, word(name))
-    return chart.svg(), tr("Outcomes along {what}, in every {bin:.0f} m.").format(what=along, bin=edges[1] - edges[0])
+    return chart.svg(), tr("Outcomes along {what}, in every {bin:.0f} m.", what=along, bin=edges[1] - edges[0])
 
 
 def bins_of(station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -62,4 +62,4 @@ def places_of_findings(one: SameFindings, most: int) -> str:
     """The names of the first elements with a finding, and how many more there are."""
     named = "; ".join(told(name) for name in one.elements[:most])
     rest = len(one.elements) - most
-    return tr("{named}; and {rest} more").format(named=named, rest=rest) if rest > 0 else named
+    return tr("{named}; and {rest} more", named=named, rest=rest) if rest > 0 else named

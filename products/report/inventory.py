@@ -88,7 +88,7 @@ def _worst(run, name):
 def _parts(rows):
     parts = defaultdict(list)
     for row in sorted(rows, key=lambda one: (one["lane"] or 0)):
-        parts[tr("lane {number}").format(number=row["lane"]) if row["lane"] else word("carriageway")].append(row)
+        parts[tr("lane {number}", number=row["lane"]) if row["lane"] else word("carriageway")].append(row)
     return parts
 
 

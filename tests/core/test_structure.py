@@ -26,7 +26,7 @@ NUMBERS = {
     "core/survey": 76,
     "core/road": 17,
     "core/intensity": 12,
-    "core/markings": 61,
+    "core/markings": 60,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,

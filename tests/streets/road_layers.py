@@ -4,13 +4,12 @@ from lanewright.core.road import detect_boundaries as boundaries
 from lanewright.core.road.common.curb_points import CurbPoints
 from lanewright.core.road.edges import fit
 from lanewright.core.road.edges.road_edges import RoadEdges
-from lanewright.core.road.profiles import detect as profiles
 from lanewright.core.road.scanlines import detect as scanlines
 from lanewright.core.road.surface import extract
 
 
 def detect_curbs(survey, *settings, **options):
-    return profiles.detect_curbs(survey, *settings, **options).to_features(survey.frame)
+    return boundaries.find_curb_points(survey, boundaries.BoundarySettings("profiles", *settings), **options)["profiles"].to_features(survey.frame)
 
 
 def curbs_from_scanlines(source, *settings, **options):

@@ -16,7 +16,7 @@ import numpy as np
 from ...common.arrays import linked_groups, members_of, overlapping_pairs
 from ...countries.painted_symbols import SYMBOLS, PaintedSymbol
 from ...execution.in_step import Asked, Work
-from ...execution.phase import NoSource, Phase
+from ...execution.phase import Items, NoSource, Phase
 from ...execution.weights import EXECUTION
 from ...lazy import cv2
 from ..road_grid import CELL_SIZE, fill_gaps, filled_between_tracks
@@ -25,7 +25,6 @@ from .classify import NOT_PAINT
 from .shape import Shape
 
 FIGURE_PARTS = NOT_PAINT, "symbol", "arrow", "hatch"   # classes that pieces of a figure may have; a small wheel looks like a cover
-GROUPS_AT_ONCE = 200   # derived: groups of markings whose cells are in memory together
 
 
 class _RecognisedFigure(NamedTuple):
@@ -45,22 +44,17 @@ def painted_figures(shapes: Sequence[Shape], kinds: Sequence[str], possible: np.
     """
     parts = np.flatnonzero(possible & np.isin(np.array(kinds, object), FIGURE_PARTS))
     result: list[_RecognisedFigure] = []
-    groups = list(_candidates(shapes, kinds, parts))
+    candidates = list(_candidates(shapes, kinds, parts))
     phase = Phase(figure_of_cells, NoSource(), (), lambda item: "the figures of all roads", together=EXECUTION.items_per_task)
-    for first in range(0, len(groups), GROUPS_AT_ONCE):
-        batch = groups[first:first + GROUPS_AT_ONCE]
-        cells = [cells_of(members) for group in batch for members in group]
-        kind_of_group = iter((yield Asked(phase, cells, 0.5 * (first + len(batch)) / len(groups))))
-        for group in batch:
-            used: set[int] = set()
-            for members, kind in [(members, next(kind_of_group)) for members in group]:
-                if kind and used.isdisjoint(members):
-                    result.append(_RecognisedFigure(members, kind))
-                    used.update(members)
+    used: set[int] = set()
+    for members, kind in zip(candidates, (yield Asked(phase, Items(len(candidates), lambda k: cells_of(candidates[k])), 0.5))):
+        if kind and used.isdisjoint(members):
+            result.append(_RecognisedFigure(members, kind))
+            used.update(members)
     return result
 
 
-def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[list[tuple[int, ...]]]:
+def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray) -> Iterator[tuple[int, ...]]:
     """Of each group of markings that lie together those that may be a figure: all, those of them that were taken for paint, and each alone."""
     box = np.array([(shape.s0, shape.s1, shape.d0, shape.d1) for shape in shapes]).reshape(-1, 4)[parts]
     a, b = overlapping_pairs(box[:, 0], box[:, 1], box[:, 0], box[:, 1], FIGURES.letter_gap)
@@ -68,7 +62,7 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
     group = linked_groups(a[near], b[near], len(parts))
     for _, together in members_of(group):
         painted = together[[kinds[k] != NOT_PAINT for k in parts[together]]]
-        tried, large = set(), []
+        tried = set()
         for subset in (together, painted, *(single[None] for single in together)):
             members = tuple(parts[subset].tolist())
             if members in tried or not 0 < len(subset) <= FIGURES.most_parts:
@@ -76,9 +70,7 @@ def _candidates(shapes: Sequence[Shape], kinds: Sequence[str], parts: np.ndarray
             tried.add(members)
             size = box[subset][:, [1, 3]].max(axis=0) - box[subset][:, [0, 2]].min(axis=0)
             if FIGURES.figure_size[0] <= size.min() <= size.max() <= FIGURES.figure_size[1]:
-                large.append(members)
-        if large:
-            yield large
+                yield members
 
 
 def figure_of_cells(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> str:

@@ -40,7 +40,7 @@ class PointDecimation:
         self._selections: dict = {}   # (road, first profile) -> (number of points, {limit: bits in the file, None for all points})
         self._uneven: dict = {}       # (road, profile) -> bool
         self._locks = [threading.Lock() for _ in range(CURBS.decimation_locks)]
-        self._file: ArrayFile | None = None
+        self._file = ArrayFile()
 
     @property
     def executor(self) -> Executor:
@@ -54,9 +54,7 @@ class PointDecimation:
     def close(self) -> None:
         """Forget the decisions and free the disk space."""
         self._selections.clear()
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        self._file.close()
 
     def decimated_points(self, road: int, profiles: tuple[int, int],
                          points_per_cell: int | None = CURBS.points_per_level_cell) -> Iterator[Points]:
@@ -107,7 +105,7 @@ class PointDecimation:
     def _decide(self, road, first):
         """Select the points of the stretch which begins with profile `first`, unless that was done."""
         key = road, first
-        with self._locks[hash(key) % (CURBS.decimation_locks - 1)]:
+        with self._locks[hash(key) % CURBS.decimation_locks]:
             if key not in self._selections:
                 self._selections[key] = self._select(road, first)
 
@@ -121,13 +119,9 @@ class PointDecimation:
                     of_block = selected[limit][done:done + len(block)]
                     of_block[slice(None) if rows is None else rows] = mask
             done += len(block)
-        return len(points), {limit: None if mask.all() else self._store_bits(np.packbits(mask)) for limit, mask in selected.items()}
-
-    def _store_bits(self, bits):
-        with self._locks[-1]:
-            if self._file is None:
-                self._file = ArrayFile()
-        return self._file.put([bits], bits.nbytes)
+        bits = {limit: None if mask.all() else np.packbits(mask) for limit, mask in selected.items()}
+        return len(points), {limit: of_points if of_points is None else self._file.put([of_points], of_points.nbytes)
+                             for limit, of_points in bits.items()}
 
 
 def _blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:

@@ -321,7 +321,7 @@ def _continued(selected, chains, steps):
     for sign in (1, -1):
         for number in free[::sign]:
             chain = chains[number]
-            position = bisect_left(selected, chain.start, key=lambda part: part[1])
+            position = bisect_left([start for _, start, _ in selected], chain.start)
             if any(a < chain.end and b > chain.start for _, a, b in selected[max(position - 1, 0):position + 1]):
                 continue
             parts = selected[position - 1:position] if sign > 0 else selected[position:position + 1]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from contextlib import closing
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,37 +20,11 @@ from ..common.curb_points import CurbPoints
 from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import widened
-from ..common.side_curbs import Search, Section, curbs_along, grids_beside, merged_passes, steps_of_roads
+from ..common.side_curbs import Search, Section, merged_passes
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
-from ..curb_returns.detect import with_curb_returns
-from ..surface.ground_grid import MeasuredGround, is_thin
-from ..surface.road_look import RoadLook
+from ..surface.ground_grid import is_thin
 from ..weights import CURBS, PROFILE
 from .steps import beside, find_averaged_steps, find_steps
-
-
-def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 ground: MeasuredGround | None = None) -> CurbPoints:
-    """Bottom corners of the curb on each side of every road, one per block, and those of corners, side streets and islands.
-
-    ground : MeasuredGround of the survey, which keeps what is measured here, or None
-
-    Returns CurbPoints. Those of status `measured` are vertices of the road edge; those of status `bridged` lie on the line
-    across a lowered curb, and those of status `occluded` where the curb is expected and something hides it.
-    """
-    ground = ground or MeasuredGround(survey)
-    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        main, beside = main_curbs(decimation, settings, progress.part(0.0, PROFILE.main_curb_progress), ground)
-        return with_curb_returns(main, decimation, settings, progress.part(PROFILE.main_curb_progress, 1.0), beside, ground)
-
-
-def main_curbs(decimation: PointDecimation, settings: CurbSettings, progress: Progress = Progress(),
-               ground: MeasuredGround | None = None) -> tuple[CurbPoints, dict[int, dict[str, OcclusionGrid]]]:
-    """The points of the roads' own curbs alone, and what was seen beside each road: its number -> side -> OcclusionGrid."""
-    steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, progress)["profiles"]
-    points = curbs_along(decimation, {"profiles": steps}, partial(RoadLook, ground or MeasuredGround(decimation.survey)))["profiles"]
-    tell_points(points, progress)
-    return points, grids_beside(steps)
 
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:
@@ -78,7 +52,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}
-    steps_by_side: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
+    steps_by_side: defaultdict[str, list[CurbSteps]] = defaultdict(list)
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
@@ -90,7 +64,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
         steps = _steps_by_noise(lines, section, settings, limit is None, side not in full)
         steps_by_side[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
-    return {side: merged_passes(steps) for side, steps in steps_by_side.items() if steps}, occlusion
+    return {side: merged_passes(steps) for side, steps in steps_by_side.items()}, occlusion
 
 
 def _steps_by_noise(lines, section, settings, overgrown, thin):

@@ -132,7 +132,7 @@ def merged_corners(seen: Sequence[CurbCorners]) -> CurbCorners:
 
 def with_scanner_noise(steps: dict[str, dict[tuple[int, str], SideSteps]]) -> dict[str, dict[tuple[int, str], SideSteps]]:
     """The same, once the corners of each side of a road have the median noise there for `scanner_noise`."""
-    for side in steps["scanlines"].values():
+    for side in steps.get("scanlines", {}).values():
         if side.steps is not None and len(side.steps):
             corners: Any = side.steps
             corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), CURBS.min_scanner_noise, SCANLINE.max_usual_noise))
@@ -198,7 +198,7 @@ class SurveyScanlines:
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice, or None to find it here
     progress : Progress of finding it
-    decimation : PointDecimation in whose points the same phase looks for profiles, or None
+    decimation : PointDecimation in whose points the same phase may look for profiles, or None
 
     frame : RoadFrame
     crs : WKT

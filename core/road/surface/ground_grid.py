@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import compress, islice
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from ...common.arrays import order_by
 from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
 from ...survey.open_survey import Survey
-from ...survey.store.array_file import ArrayFile
+from ...survey.store.array_file import ArrayPlace, SharedArrays
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.weights import FRAME
 from ..common.pseudo_scanlines import lowest_layers
@@ -334,8 +335,8 @@ class MeasuredGround:
 
     def __init__(self, survey: Survey):
         self.survey = survey
-        self._file: ArrayFile | None = None
-        self._kept: tuple[dict[tuple[int, int], int], ...] = {}, {}   # of cells and of profiles, by road and first row
+        self._arrays: SharedArrays | None = None
+        self._kept: tuple[dict[tuple[int, int], ArrayPlace], ...] = {}, {}   # of cells and of profiles, by road and first row
         self.followed: dict[int, Any] = {}   # by road: the height of the road in its cells as it was followed, and smoothed; None where there is none
 
     def cells(self, road: int) -> GroundCells:
@@ -356,14 +357,14 @@ class MeasuredGround:
         """
         in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor)
         half = _ground_columns(SURFACE.column_width)
-        cells = self._joined(0, road, rows, (len(CELL_NAMES), SURFACE.window_rows, 2 * half))
+        cells = self._kept_of(0, road, rows, (len(CELL_NAMES), SURFACE.window_rows, 2 * half))
         values = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
         ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **values)
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
             return ground, None
         half = _ground_columns(SURFACE.profile_column)
-        profiles = self._joined(1, road, wanted, (len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW, 2 * half))
+        profiles = self._kept_of(1, road, wanted, (len(SurfaceProfiles.NAMES), PROFILES_PER_WINDOW, 2 * half))
         first = np.array(wanted)[:, None] // round(SURFACE.profile_row / SURFACE.row_length) + np.arange(PROFILES_PER_WINDOW)
         return ground, SurfaceProfiles((first.ravel() + 0.5) * SURFACE.profile_row, (np.arange(-half, half) + 0.5) * SURFACE.profile_column,
                                        *profiles)
@@ -377,43 +378,40 @@ class MeasuredGround:
         kept_cells, kept_profiles = self._kept
         windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
         windows = [window for window in windows if any(window[2:])]
-        phase = Phase(ground_of_windows, self.survey, (), lambda item: self.survey.stretch(
+        self._arrays = self._arrays or SharedArrays(self.survey.executor.folder)
+        phase = Phase(ground_of_windows, self.survey, (self._arrays,), lambda item: self.survey.stretch(
             item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
-        file = self._file = self._file or ArrayFile()
-        # each goes to the file as it comes
-        places = yield Asked(phase, windows, 1.0, lambda parts: [
-            [None if values is None else file.put([values], values.nbytes) for values in parts]])
-        for places_of_window, (road, row, *_) in zip(places, windows):
-            for kept, place in zip(self._kept, places_of_window):
-                if place is not None:
-                    kept[road, row] = place
+        for places, (road, row, *measured) in zip((yield Asked(phase, windows, 1.0)), windows):
+            for kept, place in zip(compress(self._kept, measured), places):
+                kept[road, row] = place
 
-    def _joined(self, kind, road, rows, shape):
-        """What is kept of windows, each of one shape, one behind the other: 0 their cells, 1 their profiles."""
-        result = np.empty((shape[0], len(rows), *shape[1:]), np.float32)
-        for number, row in enumerate(rows):
-            result[:, number] = self._file.get(self._kept[kind][road, row], np.prod(shape), np.float32).reshape(shape)
-        return result.reshape(shape[0], -1, shape[2])
+    def _kept_of(self, kind, road, rows, shape):
+        """What is kept of windows, arrays of one shape one after the other: 0 their cells, 1 their profiles."""
+        return np.concatenate([self._arrays.get(self._kept[kind][road, row], shape) for row in rows], axis=1)
 
 
-def ground_of_windows(survey: Survey, windows: Sequence[Wanted]) -> list[tuple[np.ndarray | None, np.ndarray | None]]:
-    """The phase that measures the ground.
+def ground_of_windows(survey: Survey, windows: Sequence[Wanted], arrays: SharedArrays) -> list[list[ArrayPlace]]:
+    """The phase that measures the ground and writes it.
 
     windows : what is wanted of each window
 
     Returns
-        for each window, None where it is not wanted:
+        for each window where those that are wanted lie of:
         cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
         profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
-    result = []
+    measured = []
     for road, row, with_cells, with_profiles in windows:
         height = partial(survey.road_height, road)
         points = survey.window(road, row * SURFACE.row_length, (row + SURFACE.window_rows) * SURFACE.row_length)
-        cells = _ground_cells(points, row, SURFACE.window_rows, height) if with_cells else None
-        profiles = _profiles_of_window(survey, points, road, row) if with_profiles else None
-        result.append((_stacked(cells, CELL_NAMES), _stacked(profiles, SurfaceProfiles.NAMES)))
-    return result
+        if with_cells:
+            cells = _ground_cells(points, row, SURFACE.window_rows, height)
+            measured.append(np.array([getattr(cells, name) for name in CELL_NAMES], np.float32))
+        if with_profiles:
+            profiles = _profiles_of_window(survey, points, road, row)
+            measured.append(np.array([getattr(profiles, name) for name in SurfaceProfiles.NAMES], np.float32))
+    places = iter(arrays.put(measured))
+    return [[*islice(places, with_cells + with_profiles)] for _, _, with_cells, with_profiles in windows]
 
 
 def _profiles_of_window(survey, points, road, row):
@@ -435,8 +433,3 @@ def _profiles_of_window(survey, points, road, row):
     joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW)
     joined.count /= PROFILES_PER_WINDOW
     return replace(joined, **{name: np.repeat(getattr(joined, name), PROFILES_PER_WINDOW, axis=0) for name in SurfaceProfiles.NAMES})
-
-
-def _stacked(part, names):
-    """Attributes of a part as one array; None where there is none."""
-    return None if part is None else np.array([getattr(part, name) for name in names], np.float32)

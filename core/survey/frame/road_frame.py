@@ -6,15 +6,16 @@ pauses, turns back, crosses itself or returns to its own track.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from math import dist
 
 import numpy as np
+from scipy.ndimage import binary_closing
 from scipy.spatial import cKDTree
 
-from ...common.arrays import mask_runs
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 from ..weights import FRAME
 from .road import Road, continue_line, reference_nodes
@@ -50,10 +51,13 @@ def _moving_rows(x: np.ndarray, y: np.ndarray, step: float = FRAME.standstill_ra
 
     The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
     """
-    places, keep, count = list(zip(x.tolist(), y.tolist())), [0], len(x)
-    for row, place in enumerate(places):
-        if dist(place, places[keep[-1]]) >= step:
+    places, keep, count, row = list(zip(x.tolist(), y.tolist())), [0], len(x), 1
+    # no position lies farther from another than was driven between them, but for rounding
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
+    while (row := bisect_left(driven, driven[keep[-1]] + 0.999 * step, row)) < count:
+        if dist(places[row], places[keep[-1]]) >= step:
             keep.append(row)
+        row += 1
     if keep[-1] != count - 1:
         keep = keep[:-1] + [count - 1] if len(keep) > 1 else keep + [count - 1]
     return np.array(keep)
@@ -485,11 +489,7 @@ def _runs(mask):
 
 def _fill_runs(mask, shortest):
     """Turn runs of False shorter than `shortest` into True."""
-    filled = mask.copy()
-    for i, j in mask_runs(~mask):
-        if j - i < shortest:
-            filled[i:j] = True
-    return filled
+    return binary_closing(np.pad(mask, shortest, constant_values=True), np.ones(shortest))[shortest:-shortest]
 
 
 def _make_pass(road, time, x, y, z):

@@ -105,7 +105,7 @@ class RowTable:
     def __getitem__(self, key: tuple[Any, Any]) -> np.ndarray:
         rows, stations = key
         if isinstance(stations, slice):
-            if np.ndim(rows) == 0:
+            if isinstance(rows, (int, np.integer)):
                 return self._stretch(int(rows), *stations.indices(self.spans.stations)[:2])
             stations = np.arange(*stations.indices(self.spans.stations))
             rows = np.asarray(rows)[:, None]
@@ -116,9 +116,11 @@ class RowTable:
 
     def _stretch(self, row, first, end):
         """The row at the stations from `first` to `end` (exclusive)."""
-        missing = self.missing if np.ndim(self.missing) == 0 else self.missing[row]
-        values, kept = np.full(max(end - first, 0), missing, self.values.dtype), self.spans.values_of(row, first, end)
-        begin = max(self.spans.first.item(row) - first, 0)
+        kept = self.spans.values_of(row, first, end)
+        if kept.stop - kept.start == end - first:
+            return self.values[kept].copy()
+        missing = self.missing[row] if isinstance(self.missing, np.ndarray) else self.missing
+        values, begin = np.full(max(end - first, 0), missing, self.values.dtype), max(self.spans.first.item(row) - first, 0)
         values[begin:begin + kept.stop - kept.start] = self.values[kept]
         return values
 

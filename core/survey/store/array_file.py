@@ -5,12 +5,13 @@ The operating system keeps in memory what was written and read last, once for al
 
 from __future__ import annotations
 
+import math
 import mmap
 import os
 import tempfile
 import threading
 import weakref
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -23,6 +24,7 @@ from ...common.parallel import freed_on_demand
 from ...execution.phase import SEAL, checksum
 from ..weights import STORE
 
+ArrayPlace = tuple[str, int]   # the name of a file and the first byte of an array there
 ALIGNMENT = 8   # derived: bytes: the longest number of an array begins at a multiple of them
 
 
@@ -149,3 +151,38 @@ def new_file(folder: Path) -> Iterator[tuple[ArrayFile, str]]:
     finally:
         file.close()
         unfinished.unlink(missing_ok=True)
+
+
+class SharedArrays:
+    """Arrays that tasks write, each task those of its own at once; whoever does so, and the caller, finds them again by their places.
+
+    folder : that all of them see, in which each task makes a file; None for threads, which share a temporary file without a name
+    """
+
+    def __init__(self, folder: Path | str | None) -> None:
+        self.folder = folder and Path(folder)
+        self._file = None if folder else ArrayFile()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"folder": str(self.folder)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    def put(self, arrays: Iterable[np.ndarray]) -> list[ArrayPlace]:
+        """Write arrays; where each of them lies."""
+        if self._file is not None:
+            return [("", self._file.put([array], array.nbytes)) for array in arrays]
+        with new_file(self.folder) as (file, name):
+            return [(name, file.put([array], array.nbytes)) for array in arrays]
+
+    def get(self, place: ArrayPlace, shape: Sequence[int], dtype: Any = np.float32) -> np.ndarray:
+        """An array that was written, read-only, which stays in its file until it is used."""
+        name, first = place
+        file = opened(self.folder / name) if self._file is None else self._file
+        return file.get(first, math.prod(shape), dtype).reshape(shape)
+
+    def close(self) -> None:
+        """Release the disk space of a file without a name; what lies in a folder may be wanted again."""
+        if self._file is not None:
+            self._file.close()

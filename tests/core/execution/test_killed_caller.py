@@ -16,13 +16,13 @@ import conftest
 from curbed_streets import street, survey_of
 from lanewright.core.execution.tasks import find_interpreter
 from lanewright.core.execution.processes import WorkerProcesses
-from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
 
 survey = survey_of(street())
 survey.executor = WorkerProcesses(find_interpreter(), 1)
 print(survey.executor.folder, flush=True)
 while True:
-    detect_curbs(survey)
+    find_curb_points(survey, BoundarySettings("profiles"))
     print("curbs found", flush=True)
 """
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
-from lanewright.core.intensity.tiled_image import TiledImage
+from lanewright.core.intensity.tiled_image import TiledImage, stored_tiles
 from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff, write_display_image
 from lanewright.core.markings.paint.windows import marking_mask
+from lanewright.core.survey.store.array_file import SharedArrays
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
@@ -248,7 +249,7 @@ def test_what_a_piece_of_road_depends_on_is_asked_once_however_many_tiles_it_tou
 
 def image_of_levels(path, levels, before=None):
     """An image of a row of tiles, each of one value, None without data, in a file too; what did not change is taken over from the one before."""
-    image = TiledImage((0.0, 0.04, 0.0, 100.0, 0.0, -0.04), 512 * len(levels), 512, "")
+    image = TiledImage((0.0, 0.04, 0.0, 100.0, 0.0, -0.04), 512 * len(levels), 512, "", SharedArrays(None))
     image.states = {(k, 0): str(level) for k, level in enumerate(levels)}
     if before is not None:
         image.take_over(before)
@@ -256,7 +257,7 @@ def image_of_levels(path, levels, before=None):
         for k, level in enumerate(levels):
             if level is not None and (before is None or before.states[k, 0] != str(level)):
                 values = np.full((512, 512), level, np.float32)
-                image.put(512 * k, 0, values)
+                image.add(stored_tiles(image.arrays, [(512 * k, 0, values)]))
                 file.write(512 * k, 0, values)
     return image
 

@@ -247,9 +247,9 @@ def test_the_ground_is_measured_once_for_edges_and_surface(monkeypatch):
     survey = streets.survey_of(streets.street())
     count, plain = [0], ground_grid.ground_of_windows
 
-    def counted(source, windows):
+    def counted(source, windows, arrays):
         count[0] += len(windows)
-        return plain(source, windows)
+        return plain(source, windows, arrays)
 
     monkeypatch.setattr(ground_grid, "ground_of_windows", counted)
     ground, rows = MeasuredGround(survey), [SURFACE.window_rows * k for k in range(5)]

@@ -18,6 +18,7 @@ from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.markings.objects.figures import figure_of_cells
 from lanewright.core.road.surface.ground_grid import ground_of_windows
 from lanewright.core.survey.blocks import sensor_height_of
+from lanewright.core.survey.store.array_file import SharedArrays
 
 
 def test_an_item_is_made_when_its_turn_comes_and_not_before():
@@ -97,7 +98,9 @@ def test_workers_that_forget_what_they_read_go_on_with_the_next_phase(python):
     with closing(WorkerProcesses(python, 1)) as executor:
         found, workers = [], []
         for _ in range(2):
-            found.append([part.tolist() for part, _ in executor.run_together(Phase(ground_of_windows, survey, listed=1), [(0, 0, True, False)] * 2)])
+            arrays = SharedArrays(executor.folder)
+            phase, windows = Phase(ground_of_windows, survey, (arrays,), listed=1), [(0, 0, True, False)] * 2
+            found.append([arrays.get(place, (3, 4, 5)).tolist() for place, in executor.run_together(phase, windows)])
             workers.append([worker.process.pid for worker in executor._all])
             executor.forget()
     assert str(found[0]) == str(found[1]) and found[0]

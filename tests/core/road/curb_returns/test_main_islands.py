@@ -1,18 +1,23 @@
 """Islands that were taken for the road's own curb, because they stand nearer to the vehicle than that."""
 
 from contextlib import closing
+from functools import partial
 
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.common.progress import Progress
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import CurbPoints, curb_points_at
 from lanewright.core.road.common.decimation import PointDecimation
 from lanewright.core.road.common.occlusion import OcclusionGrid
+from lanewright.core.road.common.side_curbs import curbs_along, grids_beside, steps_of_roads
 from lanewright.core.road.common.sides import expected_height
 from lanewright.core.road.curb_returns.detect import with_curb_returns
 from lanewright.core.road.curb_returns.islands import island_stretches
-from lanewright.core.road.profiles.detect import main_curbs
+from lanewright.core.road.profiles.detect import profiles_of, steps_of_section
+from lanewright.core.road.surface.ground_grid import MeasuredGround
+from lanewright.core.road.surface.road_look import RoadLook
 from lanewright.core.road.weights import CURBS
 from street_plans import LENGTH, scan, sidewalks, survey_along
 
@@ -66,7 +71,8 @@ def test_the_curb_behind_a_platform_is_the_roads_own(side):
     survey = survey_along(scan(shapely.union_all([sidewalks(8.0), platform])))
     settings = CurbSettings()
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        points, sides = main_curbs(decimation, settings)
+        steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, Progress())
+        points, sides = curbs_along(decimation, steps, partial(RoadLook, MeasuredGround(survey)))["profiles"], grids_beside(steps["profiles"])
         # as if the curb behind had not been seen in profiles
         hidden = (points.side == side) & (points.station > 9.0) & (points.station < 27.0)
         s = np.arange(10.5, 26.0)
