@@ -62,8 +62,8 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     looks = {road: None if ground is None else RoadLook(ground, road) for road in roads}
     works = [_returns_of_road(curb_points, on_islands, decimation, road, mains[road], seen[road], settings,
                               [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
-    found = list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0)))
-    for road, (on_island, main, chain, _), curbs in zip(roads, found, seen_once([curbs for *_, curbs in found])):
+    returns = list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0)))
+    for road, (on_island, main, chain, _), curbs in zip(roads, returns, seen_once([curbs for *_, curbs in returns])):
         on_islands &= on_island
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
