@@ -28,13 +28,11 @@ from .las.samples import check_measured_once, coarse_coordinates, distinct_rows,
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_file
+from .survey import Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, TRAJECTORY, VEHICLE
-
-READING_FOLDER = "read"   # folder of points as they were read, in no order
 
 
 def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -73,10 +71,10 @@ def _survey_of_run(executor, read, progress):
         reading = executor
         if not executor.sees([Path(file.path).absolute() for file in read[0]]):
             progress.info("The workers do not see the point clouds where this computer does, which therefore reads them alone.")
-            reading = executor.in_threads()
+            reading = Keep(THREADS, executor.work) if executor.work else THREADS
         return read_survey(*read, progress, reading, executor)
 
-    if not isinstance(executor, Keep):
+    if executor.work is None:
         return read_here(progress)
     survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
@@ -116,7 +114,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     folder = reading.folder
     section = settings.section_length or section_length(files, frame)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), section, folder and folder / READING_FOLDER)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), section, folder)
     choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
@@ -125,14 +123,16 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _say_left_out(files, frame, read, settings, progress)
     height = float(np.mean(list(read.heights.values())))
     feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
-    survey = _survey_of(files, frame, read, settings, crs, progress)
+    total, (scanner_field, scanners) = sum(file.count for file in files), read.summary.census.choose(settings.scanner_field)
+    survey = Survey(files, frame, read.store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest, has_time,
+                    dict(read=total, kept=read.store.count, outside=total - read.store.count), above_road=settings.above_road)
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
     if folder is not None:
         survey.executor = ordering
-        survey.put_in_order(folder / SURVEY_FOLDER, ordering, progress.part(parts_at, read_at))
+        survey.put_in_order(folder, ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory; what passes differ by is part of the same error
@@ -149,14 +149,6 @@ def _intensity_source(samples, settings, one_scale, progress):
     for note in filter(None, (coarse_note, one_scale, intensity_note)):
         progress.warn(note)
     return intensity, rounding
-
-
-def _survey_of(files, frame, read, settings, crs, progress):
-    """The Survey of points as they were read."""
-    total, store = sum(file.count for file in files), read.store
-    scanner_field, scanners = read.summary.census.choose(settings.scanner_field)
-    return Survey(files, frame, store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest,
-                  frame.has_time, dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
 
 
 def _say_brightness(survey, intensity, settings, samples, progress):
@@ -349,46 +341,43 @@ def _check_extent(files, frame, crs, trajectory_crs, progress):
     if len(away) == len(filled):
         raise RoadExtractionError(f"The trajectory does not run through the point cloud: it covers x {x.min():.1f} to {x.max():.1f}, y {y.min():.1f} "
                                   f"to {y.max():.1f}, the cloud x {low[0]:.1f} to {high[0]:.1f}, y {low[1]:.1f} to {high[1]:.1f}. "
-                                  f"{_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+                                  f"{_other_coordinates(low, high, x, y, crs, reach) or _other_crs(crs, trajectory_crs)}")
     for file in away:
-        ends = np.array(file.minimum), np.array(file.maximum)
-        near = runs_through(*ends, x, y, TRAJECTORY.longest_step)
-        if not near or runs_through(*ends, y, x, reach) or _advice_on_units(*ends, x, y, crs, reach):
+        if advice := _other_coordinates(np.array(file.minimum), np.array(file.maximum), x, y, crs, reach):
             raise RoadExtractionError(f"The coordinates of {file.path} are of another kind than those of the other point clouds, through which the "
-                                      f"trajectory runs. {_what_to_try(*ends, x, y, crs, trajectory_crs, reach)}")
+                                      f"trajectory runs. {advice}")
     if away:
         progress.info(f"{len(away)} of {len(filled)} files lie beside the trajectory and give no points, such as {away[0].path}.")
 
 
-def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
-    """The advice of the error message, where cloud and trajectory do not overlap."""
-    if runs_through(low, high, y, x, reach):
-        return "In one of them x and y are exchanged: export the cloud with the easting as x, or name the trajectory's columns the other way round."
-    if advice := _advice_on_units(low, high, x, y, crs, reach):
-        return advice
-    if crs and runs_through(low, high, *_angles_exchanged(x, y, crs), reach):
-        return "The trajectory's longitude and latitude are exchanged: name its columns the other way round, and run again."
-    if not runs_through(low, high, x, y, TRAJECTORY.longest_step):
-        return f"They lie more than {TRAJECTORY.longest_step / 1000:.0f} km apart, as in two zones of a projection: reproject them to one CRS."
+def _other_crs(crs, trajectory_crs):
+    """The advice where cloud and trajectory do not overlap, and nothing shows why."""
     if trajectory_crs:
         return f"Both were taken to be in {crs_name(crs)}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {crs_name(crs)}, the trajectory" if crs else "The trajectory"
     return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
 
 
-def _advice_on_units(low, high, x, y, crs, reach):
-    """The advice where cloud or trajectory seem to be in feet, in degrees, or counted from the centre of the earth; "" where they do not."""
-    if any(runs_through(low * foot, high * foot, x, y, reach) for foot in (FOOT, US_SURVEY_FOOT)):
-        if not as_in_file(crs)[1].metric:
-            return "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does."
-        return "The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in, or convert the cloud to metres."
-    if any(runs_through(low, high, x * foot, y * foot, reach) for foot in (FOOT, US_SURVEY_FOOT)):
-        return "The trajectory's coordinates are the cloud's in feet: give it its CRS, as Import trajectory does, or convert it to metres."
-    if np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0:
-        return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
-    if EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1]:
-        return "The cloud's coordinates are earth-centred: reproject it to a projected CRS, such as the UTM zone of the survey."
-    return ""
+def _other_coordinates(low, high, x, y, crs, reach):
+    """The advice where cloud or trajectory seem to be exchanged, in feet or degrees, counted from the centre of the earth, or of another zone."""
+    apart, feet = not runs_through(low, high, x, y, TRAJECTORY.longest_step), (FOOT, US_SURVEY_FOOT)
+    in_feet = ("The cloud's coordinates are the trajectory's in feet: give each the CRS that it is in, or convert the cloud to metres."
+               if as_in_file(crs)[1].metric else
+               "The trajectory was taken to be in feet like the cloud, and seems to be in metres: give it its own CRS, as Import trajectory does.")
+    to_map = "reproject it to a projected CRS, such as the UTM zone of the survey."
+    checks = (
+        (lambda: runs_through(low, high, y, x, reach),
+         "In one of them x and y are exchanged: export the cloud with the easting as x, or name the trajectory's columns the other way round."),
+        (lambda: any(runs_through(low * foot, high * foot, x, y, reach) for foot in feet), in_feet),
+        (lambda: any(runs_through(low, high, x * foot, y * foot, reach) for foot in feet),
+         "The trajectory's coordinates are the cloud's in feet: give it its CRS, as Import trajectory does, or convert it to metres."),
+        (lambda: np.abs([low[:2], high[:2]]).max() <= 180 and (high - low)[:2].max() < 1.0, f"The cloud's coordinates look like degrees: {to_map}"),
+        (lambda: EARTH_RADIUS[0] < np.linalg.norm((low + high) / 2) < EARTH_RADIUS[1], f"The cloud's coordinates are earth-centred: {to_map}"),
+        (lambda: apart and crs and runs_through(low, high, *_angles_exchanged(x, y, crs), reach),
+         "The trajectory's longitude and latitude are exchanged: name its columns the other way round, and run again."),
+        (lambda: apart,
+         f"They lie more than {TRAJECTORY.longest_step / 1000:.0f} km apart, as in two zones of a projection: reproject them to one CRS."))
+    return next((advice for check, advice in checks if check()), "")
 
 
 def _angles_exchanged(x, y, crs):

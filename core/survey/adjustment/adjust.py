@@ -184,28 +184,27 @@ def continued_corrections(frame: RoadFrame, moves: PassCorrections, compared: li
     Navigation drifts slowly, by centimetres over kilometres, so what a drive is off by at the end of a road is what it is off by at the start of
     the next. Between two that were moved the correction changes evenly. Two passes meet in their middle, so what one was moved by across the road
     is also the sigma of where they meet; `frame.pass_sigma` of roads without one says so. Passes that were compared and found to lie as the others
-    do are not moved.
+    do are not moved, and those beside them less and less.
     """
-    compared_passes = {number for pair in compared for number in (pair.one, pair.other)}
-    by_pass = dict(moves.by_pass)
-    passes = sorted(frame.passes, key=lambda p: float(p.time[0]))
-    while continued := _beside_moved(passes, by_pass, compared_passes):
-        by_pass.update(continued)
-        for number in continued:
-            across = _moved_across(frame, PassCorrections(by_pass), frame.passes[number])
-            frame.pass_sigma.setdefault(frame.passes[number].road, SigmaAlong.everywhere(across))
+    known = {number for pair in compared for number in (pair.one, pair.other)} | moves.by_pass.keys()
+    passes, by_pass = sorted(frame.passes, key=lambda p: float(p.time[0])), dict(moves.by_pass)
+    seams = [k for k, (p, after) in enumerate(zip(passes, passes[1:]), 1) if after.time[0] - p.time[-1] > ADJUST.max_seam]
+    for first, end in zip([0, *seams], [*seams, len(passes)]):
+        for p, nodes in _of_drive(passes[first:end], moves, known):
+            by_pass[p.number] = nodes
+            frame.pass_sigma.setdefault(p.road, SigmaAlong.everywhere(_moved_across(frame, PassCorrections(by_pass), p)))
     return PassCorrections(by_pass)
 
 
-def _beside_moved(passes, by_pass, known):
-    """Corrections of the passes, in order of time, that touch one of those moved, and are neither moved nor known to lie right."""
-    continued = {}
-    for before, p, after in zip([None, *passes[:-1]], passes, [*passes[1:], None]):
-        if p.number not in by_pass and p.number not in known:
-            ends = _touching(before, p, by_pass), _touching(p, after, by_pass)
-            if any(ends):
-                continued[p.number] = _led_on(PassCorrections(by_pass), p, *ends)
-    return continued
+def _of_drive(drive, moves, known):
+    """Yield the passes of a drive that could be compared with no other, and how they are moved; none where nothing of the drive was moved."""
+    fixed = [p for p in drive if p.number in known]
+    if moves.by_pass.keys() & {p.number for p in fixed}:
+        times = np.concatenate([p.time[[0, -1]] for p in fixed])
+        metres = np.concatenate([moves.metres(p.number, p.s[[0, -1]]) if p.number in moves.by_pass else np.zeros((3, 2)) for p in fixed], axis=1)
+        for p in drive:
+            if p.number not in known:
+                yield p, _led_on(p, np.array([np.interp(p.time[[0, -1]], times, axis) for axis in metres]))
 
 
 def _moved_across(frame, moves, p):
@@ -216,20 +215,12 @@ def _moved_across(frame, moves, p):
     return float(np.sqrt(np.mean((north * np.cos(heading) - east * np.sin(heading)) ** 2)))
 
 
-def _touching(first: Pass | None, then: Pass | None, by_pass: dict) -> Pass | None:
-    """The one of two passes that was moved, if they touch in time."""
-    if first is None or then is None or not 0.0 <= then.time[0] - first.time[-1] <= ADJUST.max_seam:
-        return None
-    return next((p for p in (first, then) if p.number in by_pass), None)
-
-
-def _led_on(moves, p, before, after):
-    """(station of the first node, (3, N) int16 in 0.1 mm) of a pass from the ends of those before and after it, either of them None."""
-    ends = [np.array(moves.metres(neighbour.number, neighbour.s[[row]])) for neighbour, row in ((before, -1), (after, 0)) if neighbour is not None]
+def _led_on(p, metres):
+    """(station of the first node, (3, N) int16 in 0.1 mm) of a pass that is moved by (3, 2) m at its beginning and its end."""
     first, last = p.span
     nodes = first + REGISTER.correction_step * np.arange(int(np.ceil((last - first) / REGISTER.correction_step)) + 1)
     share = np.interp(nodes, [first, last], [0.0, 1.0] if p.s[-1] > p.s[0] else [1.0, 0.0])
-    return first, to_units(ends[0] + share * (ends[-1] - ends[0])).astype(np.int16)
+    return first, to_units(metres[:, :1] + share * (metres[:, 1:] - metres[:, :1])).astype(np.int16)
 
 
 # Where passes still differ after they were laid on each other, and where one was moved that no other confirms, place by place.

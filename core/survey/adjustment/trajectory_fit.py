@@ -15,7 +15,7 @@ from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
 from ...io.crs import FOOT
 from ..estimation.poses import resected, vehicle_axes
-from ..estimation.samples import SAMPLED_LAYERS
+from ..estimation.samples import SAMPLED_LAYERS, thinned
 from ..frame.road_frame import decimate_by_distance, runs_through
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.point_fields import SCANNER_FIELDS, first_returns, scanners_of
@@ -44,14 +44,11 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
     progress : Progress, which hears one warning for each thing that does not fit
     """
     shape = shaped_trajectory(clean_trajectory(trajectory))
-    for warning in shape.said:
-        progress.warn(warning)
+    progress.warn_all(shape.said)
     unmoved = shape.trajectory if shape.said else trajectory
-    way = shape.trajectory.x, shape.trajectory.y
-    files = [file for file in files if file.count and runs_through(file.minimum, file.maximum, *way, FRAME.corridor)]
-    if not trajectory.has_time or not files or not all(file.has_time for file in files):
+    sample = _sample_along(files, shape.trajectory, scanner_field)
+    if sample is None:
         return _FittedTrajectory(unmoved, shape.sigma, False)
-    sample = read_places(files, scanner_field)
     if (far := _far_away(sample, shape.trajectory)) > ESTIMATE.farthest_median:
         progress.warn(f"Half of the points lie more than {far:.0f} m from the trajectory; a vehicle on the road sees half within "
                       f"{ESTIMATE.farthest_median:.0f} m. Check that cloud and trajectory are of one drive, and neither is flown nor mirrored.")
@@ -69,6 +66,12 @@ def fitted_trajectory(files: Sequence[CloudHeader], trajectory: Trajectory, scan
         mountings = _met(scanner_mountings(sample, level))
     moved, left = _on_way(level, mountings, progress)
     return _FittedTrajectory(unmoved if moved is shape.trajectory else moved, float(np.hypot(shape.sigma, left)), True)
+
+
+def _sample_along(files, trajectory, scanner_field):
+    """The points of `read_places` of the files that a trajectory runs through; None where there are none, or not all have times."""
+    near = [file for file in files if file.count and runs_through(file.minimum, file.maximum, trajectory.x, trajectory.y, FRAME.corridor)]
+    return read_places(near, scanner_field) if trajectory.has_time and near and all(file.has_time for file in near) else None
 
 
 def _far_away(sample, trajectory):
@@ -283,10 +286,8 @@ def _in_vehicle_frame(sample, trajectory, stretch):
     # by scanner, then by time, as the sample is
     driven = driven[np.argsort(sample.scanner[driven], kind="stable")]
     windows = np.stack([sample.scanner[driven], np.floor(sample.time[driven] / VEHICLE.turns_window)])
-    begin = np.flatnonzero((np.diff(windows, axis=1, prepend=np.nan) != 0).any(axis=0))
-    size = np.diff(np.append(begin, len(driven)))
-    rank = np.arange(len(driven)) - np.repeat(begin, size)
-    used = np.repeat(size >= MIN_TURNS_POINTS, size) & (rank % np.repeat(-(-size // MAX_TURNS_POINTS), size) == 0)
+    group = np.cumsum((np.diff(windows, axis=1, prepend=windows[:, :1]) != 0).any(axis=0))
+    used = (np.bincount(group)[group] >= MIN_TURNS_POINTS) & thinned(group, MAX_TURNS_POINTS)
     rows = np.sort(driven[used])
     time, place = sample.time[rows], sample.place[rows]
     rays = place - np.stack([np.interp(time, trajectory.time, getattr(trajectory, name)) for name in "xyz"], axis=1)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.ndimage import binary_dilation
 
 from ...common.arrays import Rows
 from ...common.progress import Progress
@@ -189,10 +190,7 @@ def _reached(poses, good):
     reached = np.zeros(good.shape, bool)
     for drive in poses.drives:
         rows = slice(drive.first, drive.first + drive.count - 3)
-        total = np.concatenate([np.zeros((1, good.shape[1]), int), np.cumsum(good[rows], axis=0)])
-        places = np.arange(drive.count - 3)
-        low, high = np.maximum(places - RAYS.reach, 0), np.minimum(places + RAYS.reach + 1, drive.count - 3)
-        reached[rows] = total[high] > total[low]
+        reached[rows] = binary_dilation(good[rows], np.ones((2 * RAYS.reach + 1, 1)))
     return reached
 
 
@@ -313,9 +311,8 @@ class _BandedEquations:
                 self.band[first + i:first + i + size, j - i] += weight[:, None, None] * change[:, i, :, None] * change[:, j, None, :]
             self.right[first + i:first + i + size] -= (weight * off)[:, None] * change[:, i]
 
-    def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Changes of the control values (knots, columns) and of the common unknowns (common,), the covariance of the latter, and
-        (knots, columns, common) how control values follow from them."""
+    def _lower(self):
+        """The band as `cholesky_banded` takes it."""
         knots, _, columns, _ = self.band.shape
         lower = np.zeros((4 * columns, knots * columns))
         for step in range(4):
@@ -325,6 +322,13 @@ class _BandedEquations:
                     if below >= 0:
                         lower[below, a:(knots - step) * columns:columns] = self.band[:knots - step, step, a, b]
         lower[0] += RAYS.tiny
+        return lower
+
+    def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Changes of the control values (knots, columns) and of the common unknowns (common,), the covariance of the latter, and
+        (knots, columns, common) how control values follow from them."""
+        knots, _, columns, _ = self.band.shape
+        lower = self._lower()
         factor = (cholesky_banded(lower, lower=True, overwrite_ab=True, check_finite=False), True)
         border = self.border.reshape(knots * columns, -1)
         solved = cho_solve_banded(factor, np.concatenate([self.right.reshape(-1, 1), border], axis=1), check_finite=False)
@@ -339,24 +343,19 @@ class _BandedEquations:
         Blocks of three knots form a block-tridiagonal matrix; the diagonal blocks of its inverse follow from one sweep from either end.
         """
         knots, _, columns, _ = self.band.shape
-        blocks = -(-knots // 3)
-        side = 3 * columns
-        diagonal, next_ = np.zeros((blocks, side, side)), np.zeros((blocks, side, side))
-        for knot in range(3 * blocks):
-            rows = slice((knot % 3) * columns, (knot % 3 + 1) * columns)
-            if knot >= knots:
-                diagonal[knot // 3, rows, rows] = np.eye(columns)
-                continue
-            for step in range(min(4, knots - knot)):
-                partner = knot + step
-                cols = slice((partner % 3) * columns, (partner % 3 + 1) * columns)
-                part = self.band[knot, step] + (step == 0) * RAYS.tiny * np.eye(columns)
-                if partner // 3 == knot // 3:
-                    diagonal[knot // 3, rows, cols] += part
-                    if step:
-                        diagonal[knot // 3, cols, rows] += part.T
-                else:
-                    next_[knot // 3, rows, cols] += part
+        blocks, side = -(-knots // 3), 3 * columns
+        lower = np.pad(self._lower(), ((0, 0), (0, blocks * side - knots * columns)))
+        lower[0, knots * columns:] = 1.0
+        row, column = np.indices((side, side))
+
+        def below(step):
+            """The blocks so many rows below the diagonal."""
+            depth = row - column + step
+            values = lower[np.clip(depth, 0, len(lower) - 1), (side * np.arange(blocks))[:, None, None] + column]
+            return np.where((depth >= 0) & (depth < len(lower)), values, 0.0)
+
+        diagonal, next_ = below(0), below(side).transpose(0, 2, 1)
+        diagonal += np.tril(diagonal, -1).transpose(0, 2, 1)
         ahead, behind = diagonal.copy(), diagonal.copy()
         for k in range(1, blocks):
             ahead[k] -= next_[k - 1].T @ np.linalg.solve(ahead[k - 1], next_[k - 1])

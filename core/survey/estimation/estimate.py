@@ -269,8 +269,7 @@ def _with_density_sigma(trajectory, notes):
 
 
 def _rough(time, place, yaw, origin, crs, has_time):
-    unknown = np.full(len(time), np.nan)
-    return Trajectory(time, *(place + origin).T, unknown, unknown, (90.0 - np.degrees(yaw)) % 360.0, crs, has_time)
+    return Trajectory(time, *(place + origin).T, heading=(90.0 - np.degrees(yaw)) % 360.0, crs=crs, has_time=has_time)
 
 
 # Clouds that no vehicle on a road has measured are refused by name.

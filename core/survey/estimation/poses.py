@@ -322,10 +322,9 @@ def known_intervals(poses: Poses, scanners: list[Spinning]) -> np.ndarray:
     fixed = np.zeros((len(poses.control), len(scanners)), bool)
     for k, scanner in enumerate(scanners):
         for knots, fixes in zip(poses.drives, scanner.fixes):
-            if len(fixes.time):
-                interval = knots.interval(fixes.time)[0]
-                for step in (-1, 0, 1):
-                    fixed[np.clip(interval + step, knots.first, knots.first + knots.count - 4), k] = True
+            interval = knots.interval(fixes.time)[0]
+            for step in (-1, 0, 1):
+                fixed[np.clip(interval + step, knots.first, knots.first + knots.count - 4), k] = True
     return fixed
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage, sparse
+from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
@@ -215,12 +216,12 @@ def ridge_of(place: np.ndarray) -> np.ndarray:
     density = ndimage.gaussian_filter(count, TRACK.blur / TRACK.cell)
     crest = density / np.maximum(ndimage.maximum_filter(density, int(TRACK.crest_window / TRACK.cell) | 1), 1e-9)
     crest[density < TRACK.min_density_share * np.quantile(density[count > 0], TRACK.dense_share)] = 0.0
-    number = np.full(shape, -1)
     used = crest >= TRACK.min_crest_share
-    number[used] = np.arange(used.sum())
-    graph = _graph(number, crest)
-    path = _longest_path(graph, crest[used] >= TRACK.end_crest_share)
-    cells = np.stack(np.nonzero(used), axis=1)[path]
+    cells, height = np.stack(np.nonzero(used), axis=1), crest[used]
+    # metres between neighbouring cells, dearer off the crest
+    graph = (tree := cKDTree(TRACK.cell * cells)).sparse_distance_matrix(tree, 1.5 * TRACK.cell, output_type="coo_matrix")
+    graph.data *= 2.0 / (height[graph.row] ** TRACK.crest_cost + height[graph.col] ** TRACK.crest_cost)
+    cells = cells[_longest_path(graph.tocsr(), height >= TRACK.end_crest_share)]
     track = (cells[:, ::-1] + 0.5) * TRACK.cell + corner
     driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track, axis=0).T))]
     if driven[-1] < TRACK.min_ridge:
@@ -248,21 +249,6 @@ def _on_ground(place):
     on_ground = np.empty(len(cell), bool)
     on_ground[order] = np.abs(place[order, 2] - ground) <= TRACK.ground_layer
     return on_ground
-
-
-def _graph(number, crest):
-    """Sparse costs between neighbouring cells: metres, dearer off the crest."""
-    rows, columns, costs = [], [], []
-    for dr, dc in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        height, width = number.shape
-        a = (slice(0, height - dr), slice(max(-dc, 0), width - max(dc, 0)))
-        b = (slice(dr, height), slice(max(dc, 0), width + min(dc, 0)))
-        linked = (number[a] >= 0) & (number[b] >= 0)
-        rows.append(number[a][linked])
-        columns.append(number[b][linked])
-        costs.append(np.hypot(dr, dc) * TRACK.cell * 2.0 / (crest[a][linked] ** TRACK.crest_cost + crest[b][linked] ** TRACK.crest_cost))
-    size = int(number.max()) + 1
-    return sparse.csr_matrix((np.concatenate(costs), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
 
 
 def _longest_path(graph, ends):

@@ -13,9 +13,9 @@ from functools import cached_property
 from math import dist
 
 import numpy as np
+from scipy.ndimage import binary_closing
 from scipy.spatial import cKDTree
 
-from ...common.arrays import mask_runs
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 from ..weights import FRAME
 from .road import Road, continue_line, reference_nodes
@@ -489,11 +489,7 @@ def _runs(mask):
 
 def _fill_runs(mask, shortest):
     """Turn runs of False shorter than `shortest` into True."""
-    filled = mask.copy()
-    for i, j in mask_runs(~mask):
-        if j - i < shortest:
-            filled[i:j] = True
-    return filled
+    return binary_closing(np.pad(mask, shortest, constant_values=True), np.ones(shortest))[shortest:-shortest]
 
 
 def _make_pass(road, time, x, y, z):

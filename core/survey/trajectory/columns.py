@@ -226,19 +226,14 @@ def _is_counter(column):
 
 def _time_column(sample):
     """The column that increases most evenly; a row number only where nothing else increases."""
-    best, column = np.inf, None
-    for k in range(sample.shape[1]):
-        step = np.diff(sample[:, k])
-        step = step[np.isfinite(step)]
-        if not len(step) or np.mean(step > 0) < 0.995:
-            continue
-        usual = np.median(step)
-        uneven = np.mean(np.abs(step - usual) > 0.2 * usual) + (1.0 if _is_counter(sample[:, k]) else 0.0)
-        # a coordinate increases evenly on a straight road, but never in equal steps
-        uneven += 0.1 * min(np.median(np.abs(step - usual)) / usual, 1.0)
-        if uneven < best - 1e-6:
-            best, column = uneven, k
-    return column
+    uneven = np.full(sample.shape[1], np.inf)
+    for k, column in enumerate(sample.T):
+        step = np.diff(column)[np.isfinite(np.diff(column))]
+        if len(step) and np.mean(step > 0) >= 0.995:
+            off = np.abs(step / np.median(step) - 1.0)
+            # a coordinate increases evenly on a straight road, but never in equal steps
+            uneven[k] = np.mean(off > 0.2) + _is_counter(column) + 0.1 * min(np.median(off), 1.0)
+    return int(np.argmin(np.round(uneven, 6))) if np.isfinite(uneven).any() else None
 
 
 def _rate(sample, time, k, percent):
@@ -282,11 +277,8 @@ def _agreeing_headings(sample, time, others, pairs):
     """[(by what the likeliest is the least, ..., pair, heading column)]: pairs of coordinates with the headings that confirm them."""
     agreeing = []
     for a, b, unit in pairs:
-        x, y = sample[:, a].copy(), sample[:, b].copy()
-        if unit != "metres":
-            scale = TRAJECTORY.metres_per_degree * (np.degrees(1.0) if unit == "radians" else 1.0)
-            middle = np.nanmedian(y) * (1.0 if unit == "radians" else np.pi / 180)
-            x, y = x * scale * np.cos(middle), y * scale
+        per_unit = np.degrees(1.0) if unit == "radians" else 1.0
+        x, y = rough_metres(sample[:, a] * per_unit, sample[:, b] * per_unit, "" if unit == "metres" else "EPSG:4326")
         for h in others:
             if h in (a, b):
                 continue
@@ -310,15 +302,10 @@ def _local_pairs(sample, time, others):
 
 
 def _geographic_pairs(sample, time, others):
-    pairs = []
-    for a in others:
-        for b in others:
-            if abs(a - b) != 1 or np.nanmax(np.abs(sample[:, a])) > 180 or np.nanmax(np.abs(sample[:, b])) > 90:
-                continue
-            unit = geographic_unit(sample[:, a], sample[:, b], None if time is None else sample[:, time])
-            if unit:
-                pairs.append((a, b, unit))
-    return pairs
+    seconds = None if time is None else sample[:, time]
+    pairs = [(a, b, geographic_unit(sample[:, a], sample[:, b], seconds)) for a in others for b in (a - 1, a + 1)
+             if b in others and np.nanmax(np.abs(sample[:, a])) <= 180]
+    return [pair for pair in pairs if pair[2]]
 
 
 def _height_column(sample, time, others, plane, heading):

@@ -262,10 +262,8 @@ def _angle_unit(angles, headings, driven, course, unit):
 
 def _likelier_unit(heading, course):
     """The unit in which (N,) headings differ less from the course, degrees; "" of none."""
-    if not len(heading):
-        return ""
-    as_degrees, as_radians = (float(np.median(angle_between(angles, course))) for angles in (heading, np.degrees(heading)))
-    return "degrees" if as_degrees <= as_radians else "radians"
+    units = {"degrees": heading, "radians": np.degrees(heading)}
+    return min(units, key=lambda unit: np.median(angle_between(units[unit], course))) if len(heading) else ""
 
 
 def _from_north(heading, in_degrees, course, unit, notes, doubts):

@@ -244,34 +244,28 @@ def _hemisphere_signs(texts: Sequence[str]) -> np.ndarray | None:
     return np.array([-1.0 if letter in ("S", "W") else 1.0 for letter in letters])
 
 
-def _whole_minutes(values: np.ndarray) -> np.ndarray:
-    """(N,) degrees of numbers in which receivers write degrees and minutes together, ddmm.mmmm (NMEA 0183)."""
-    size = np.where(np.isfinite(values), np.abs(values), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
-
-
-def _whole_seconds(values: np.ndarray) -> np.ndarray:
-    """(N,) numbers ddmm.mmmm of numbers in which degrees, minutes and seconds are written together, ddmmss.ss."""
-    size = np.abs(values)
+def _unpacked(values: np.ndarray, parts: int = 1) -> np.ndarray:
+    """(N,) degrees of numbers in which degrees and minutes are written together, ddmm.mmmm (NMEA 0183), or seconds as a second part, ddmmss.ss."""
     # 1e-7 s are 3 µm on the ground, and more than what doubles lose in 1800000
-    size = np.where(np.isfinite(size), np.round(size, 7), np.nan)
-    return np.copysign(np.floor(size / 100.0) + size % 100.0 / 60.0, values)
+    size = np.where(np.isfinite(values), np.abs(values) if parts == 1 else np.round(np.abs(values), 7), np.nan)
+    for _ in range(parts):
+        size = np.floor(size / 100.0) + size % 100.0 / 60.0
+    return np.copysign(size, values)
 
 
 def angle_of(columns: Sequence[TableColumn], k: int, most: float) -> np.ndarray:
     """(N,) degrees of a column of longitudes or latitudes, with the hemisphere in the column behind it or before it."""
     column = columns[k]
-    if not column.holds_texts and column.unit.name == "packed minutes":
-        return _whole_minutes(column.values)
-    if not column.holds_texts and column.unit.name == "packed seconds":
-        return _whole_minutes(_whole_seconds(column.values * column.unit.factor))
+    packed_parts = {"packed minutes": 1, "packed seconds": 2}.get(column.unit.name, 0)
+    if packed_parts and not column.holds_texts:
+        return _unpacked(column.values * column.unit.factor, packed_parts)
     values = _degrees(column)
     sides = [_hemisphere_signs(column.written()) for column in (*columns[k + 1:k + 2], *columns[max(k - 1, 0):k]) if column.holds_texts]
     signs = next((signs for signs in sides if signs is not None), None)
     if signs is None:
         return values
     packed = most < np.nanmax(np.abs(values), initial=0.0) < 100 * most
-    return np.where(signs < 0, -1.0, 1.0) * np.abs(_whole_minutes(values) if packed else values)
+    return np.where(signs < 0, -1.0, 1.0) * np.abs(_unpacked(values) if packed else values)
 
 
 def _degrees(column):
@@ -365,7 +359,7 @@ def _place_columns(text, number):
     for axis in ("lat", "lon"):
         if f"{axis}_side" in text:
             signs = _hemisphere_signs(text[f"{axis}_side"])
-            number[axis] = _whole_minutes(number[axis]) * (1.0 if signs is None else signs)
+            number[axis] = _unpacked(number[axis]) * (1.0 if signs is None else signs)
         number[axis] = np.where(bad, np.nan, number[axis])
     if "geoid" in number and np.isfinite(number["geoid"]).any():
         number["z"] = number["z"] + number["geoid"]
@@ -396,25 +390,8 @@ def _read_track(path: Path) -> list[TableColumn]:
     Of GPX the points of tracks are taken, otherwise those of its route, otherwise its waypoints; of KML the tracks (gx:Track), otherwise the
     lines, otherwise the points.
     """
-    rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
-    whens = []
     try:
-        with open(path, "rb") as file:
-            if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
-                raise ValueError("it declares entities of its own")
-        for _, element in iterparse(path):
-            name, text = _local(element), (element.text or "").strip()
-            if name in ("trkpt", "rtept", "wpt"):
-                parts = {_local(child): (child.text or "").strip() for child in element}
-                rows[name].append([element.get("lon", ""), element.get("lat", ""), parts.get("ele", ""), parts.get("time", "")])
-            elif name == "when":
-                whens.append(text)
-            elif name == "coord":
-                rows[name].append([*text.split(), "", "", ""][:4])
-            elif name == "coordinates":
-                rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
-            if name not in ("ele", "time"):
-                element.clear()
+        rows, whens = _positions(path)
     except ParseError as problem:
         raise RoadExtractionError(f"{path} cannot be read as XML ({problem}). Save the track again.") from problem
     except (LookupError, ValueError) as problem:
@@ -431,9 +408,26 @@ def _read_track(path: Path) -> list[TableColumn]:
     return columns if columns[3].first else columns[:3]
 
 
-def _local(element):
-    """The name of an element without its namespace."""
-    return element.tag.rpartition("}")[2]
+def _positions(path):
+    """{element: rows of [longitude, latitude, height, time], as texts} of a file, and the times of a track that has them by themselves."""
+    rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
+    whens = []
+    with open(path, "rb") as file:
+        if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
+            raise ValueError("it declares entities of its own")
+    for _, element in iterparse(path):
+        name, text = element.tag.rpartition("}")[2], "".join(element.itertext()).strip()
+        if name in ("trkpt", "rtept", "wpt"):
+            rows[name].append([element.get("lon", ""), element.get("lat", ""), element.findtext("{*}ele", ""), element.findtext("{*}time", "")])
+        elif name == "when":
+            whens.append(text)
+        elif name == "coord":
+            rows[name].append([*text.split(), "", "", ""][:4])
+        elif name == "coordinates":   # those of a line are one text
+            rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
+        if name not in ("ele", "time"):
+            element.clear()
+    return rows, whens
 
 
 def is_record(path: Path) -> bool:

@@ -260,38 +260,18 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
 
 
 def _offsets(first, last, cloud, system):
-    """[(system, offset)]: the offsets that may convert each time system to the cloud's."""
-    options = [*_absolute_offsets(first, cloud, system), *_period_offsets(first, last, cloud, system)]
-    kept = [(name, float(offset)) for name, offset in options if system in ("automatic", name)]
-    return [("as it is", 0.0), *kept] if system == "automatic" else kept
-
-
-def _absolute_offsets(first, cloud, system):
-    """Those of times that count from 1980, "adjusted" or not."""
-    shifts = (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0))
-    if cloud > 1.5 * SECONDS_PER_WEEK:   # the count of the cloud does not start again every week
-        return [(name, shift + cloud - _since_1980(cloud)) for name, shift in shifts]
-    periods = (SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,)
-    return [(name, -np.floor((first + shift) / period) * period + shift + turn * period) for name, shift in shifts
-            if system == name or first > 2 * SECONDS_PER_WEEK or first < 0 for period in periods for turn in (0, -1, 1)]
-
-
-def _period_offsets(first, last, cloud, system):
-    """Those of times that start again every week or day."""
-    options = []
-    for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
-        if last <= 2 * period or system == name:
-            counted = _since_1980(cloud) if cloud > 1.5 * SECONDS_PER_WEEK else cloud
-            start = np.floor(counted / period) * period - counted + cloud
-            options += [(name, start + turn * period) for turn in (0, -1, 1)]
-    if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
-        options.append(("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY))
-    return options
-
-
-def _since_1980(cloud):
-    """GPS time of an absolute time of a cloud, adjusted or not."""
-    return cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
+    """[(system, offset)]: the offsets that may convert each time system to that of a cloud about a time, to the period nearest to it."""
+    absolute = cloud > 1.5 * SECONDS_PER_WEEK   # its count does not start again every week
+    shift = -ADJUSTED_OFFSET * (absolute and cloud < ADJUSTED_OFFSET)
+    of_a_day = cloud < 1.5 * SECONDS_PER_DAY
+    periods, never = (SECONDS_PER_WEEK, SECONDS_PER_DAY), (1e12,)
+    since_1980 = absolute | (first > 2 * SECONDS_PER_WEEK) | (first < 0), never if absolute else periods[:1 + of_a_day]
+    rows = (("adjusted", ADJUSTED_OFFSET, *since_1980), ("gps", 0.0, *since_1980),
+            ("week", 0.0, last <= 2 * SECONDS_PER_WEEK, periods[:1 + (of_a_day & (first >= 1.5 * SECONDS_PER_DAY))]),
+            ("day", 0.0, last <= 2 * SECONDS_PER_DAY, periods[1:]))
+    options = [(name, float(begins + shift + period * np.rint((cloud - (first + last) / 2 - begins - shift) / period)))
+               for name, begins, likely, counts in rows if (system == name) | (system == "automatic") & likely for period in counts]
+    return [("as it is", 0.0)] * (system == "automatic") + options
 
 
 def is_to_come(seconds: float) -> bool:

@@ -255,23 +255,14 @@ def _reproject_heading(trajectory, source, transformer, x, y):
     heading = np.full(len(x), np.nan)
     if not finite.any():
         return heading
-    ahead = np.radians(trajectory.heading[finite])
-    step_x, step_y = TRAJECTORY.heading_step * np.sin(ahead), TRAJECTORY.heading_step * np.cos(ahead)
+    x0, y0, ahead = (values[finite] for values in (trajectory.x, trajectory.y, trajectory.heading))
     if source.is_geographic:
-        latitude = np.radians(trajectory.y[finite])
-        per_degree_y, per_degree_x = _metres_per_degree(source.ellipsoid, latitude)
-        step_x, step_y = step_x / per_degree_x, step_y / per_degree_y
-    to_x, to_y = transformer.transform(trajectory.x[finite] + step_x, trajectory.y[finite] + step_y)
+        further = source.get_geod().fwd(x0, y0, ahead, np.full(len(x0), TRAJECTORY.heading_step))[:2]
+    else:
+        further = x0 + TRAJECTORY.heading_step * np.sin(np.radians(ahead)), y0 + TRAJECTORY.heading_step * np.cos(np.radians(ahead))
+    to_x, to_y = transformer.transform(*further)
     heading[finite] = np.degrees(np.arctan2(to_x - x[finite], to_y - y[finite])) % 360.0
     return heading
-
-
-def _metres_per_degree(ellipsoid, latitude):
-    """Metres per degree along the meridian and along the parallel, at (N,) latitudes in radians (radii of curvature of the ellipsoid)."""
-    major = ellipsoid.semi_major_metre
-    e2 = 1.0 - (ellipsoid.semi_minor_metre / major)**2
-    w = np.sqrt(1.0 - e2 * np.sin(latitude)**2)
-    return np.radians(1.0) * major * (1.0 - e2) / w**3, np.radians(1.0) * major * np.cos(latitude) / w
 
 
 # Whether a trajectory can be the way of a vehicle: as smooth as one drives, and with vertices as near to each other as its bends need.
