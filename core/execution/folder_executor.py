@@ -18,7 +18,7 @@ from uuid import uuid4
 from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL, check_cancelled
 from ..common.progress import Progress
-from .phase import Executor, Phase, name_of, paths_of, read_plain, read_results, write_plain
+from .phase import Executor, Phase, name_of, paths_of, read_plain, write_plain
 from .weights import EXECUTION
 
 
@@ -216,4 +216,4 @@ class Work:
         until = time.monotonic() + EXECUTION.result_time
         while not all(path.exists() for path in paths_of(part.file)) and time.monotonic() < until:
             time.sleep(POLL_INTERVAL)
-        return read_results(part.file)
+        return [*map(read_plain, part.file)] if isinstance(part.file, list) else read_plain(part.file)

@@ -23,7 +23,7 @@ from .phase import THREADS, Executor, Items, NoSource, Phase, digest, is_sealed,
 from .tasks import code_digest, versions
 from .weights import EXECUTION
 
-POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name: they lie in the same folder, or in one within it
+POINTS = re.compile(r"points-[0-9a-f]{32}\.bin")   # sealed files that results name, in the same folder
 OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a work folder, which may hold those of others
 
 
@@ -63,7 +63,7 @@ class Keep(Executor):
         self.executor, self.work, self.folder = executor, work, work or executor.folder
         self._base: tuple[Any, ...] = code_digest(), versions()   # what all hashes depend on
         self._results: dict[str, Any] = {}   # in memory
-        self._whole: dict[str, Path] = {}   # files of points that were seen to be whole
+        self._whole: set[str] = set()   # files of points that were seen to be whole
         self._first = 0   # how many results there were after the first run
         # all but the work itself is that of the executor
         self.sees, self.forget, self.release, self.close = (  # type: ignore[method-assign]
@@ -80,12 +80,7 @@ class Keep(Executor):
         try:
             names = self._names(phase, items)
             missing = {name: k for k, name in enumerate(names) if not self._is_kept(name)}
-            rows = list(missing.values())
-            if self.work is not None and len(rows) < len(names):
-                progress.info(f"{len(names) - len(rows)} of {len(names)} parts of the work were finished by an earlier run.")
-            files = [self._path(name) for name in missing] if self.folder else ()
-            few = self.work is None and (2 * len(rows) < len(names) or self._first and len(rows) <= EXECUTION.few_items)
-            made = (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
+            made = self._made(phase, items, missing, len(names), progress)
             for k, name in enumerate(names):
                 if name not in missing:
                     yield self._kept(name, phase, items[k])
@@ -98,6 +93,15 @@ class Keep(Executor):
         except OSError as error:
             raise self.disk_error(error) from error
         progress.report(1.0)
+
+    def _made(self, phase, items, missing, count, progress):
+        """The results of the items of a phase that are missing of `count`: {name: number of the item}."""
+        rows = list(missing.values())
+        if self.work is not None and len(rows) < count:
+            progress.info(f"{count - len(rows)} of {count} parts of the work were finished by an earlier run.")
+        files = [self._path(name) for name in missing] if self.folder else ()
+        few = self.work is None and (2 * len(rows) < count or self._first and len(rows) <= EXECUTION.few_items)
+        return (THREADS if few else self.executor).run_together(phase, Items(len(rows), lambda k: items[rows[k]]), progress, files)
 
     def _names(self, phase, items):
         """The hash of what each item depends on."""
@@ -130,11 +134,10 @@ class Keep(Executor):
         path, texts = self._path(name), []
         value = read_plain(path, texts.append)
         named = set(POINTS.findall(texts[0]))
-        places = [place for file in named - self._whole.keys() for place in (self.folder / file, *self.folder.glob(f"*/{file}"))]
-        self._whole.update({place.name: place for place in places if is_sealed(place)})
-        if not named <= self._whole.keys():
+        self._whole.update(file for file in named - self._whole if is_sealed(self.folder / file))
+        if not named <= self._whole:
             raise OSError("points are gone or damaged")
-        for used in (path, *map(self._whole.get, named)):
+        for used in (path, *(self.folder / file for file in named)):
             with suppress(OSError):   # of another user
                 os.utime(used)
         return value
@@ -160,7 +163,7 @@ class Keep(Executor):
     def _trim(self):
         """Remove what no run has used for a day, the oldest first, while the folder holds more than is free on its disk."""
         files = []
-        for path in self.work.rglob("*"):
+        for path in self.work.iterdir():
             with suppress(OSError):   # another run may have removed it
                 files += [(path.stat().st_mtime, path.stat().st_size, path)] if OURS.fullmatch(path.name) else []
         excess = sum(size for _, size, _ in files) - shutil.disk_usage(self.work).free
@@ -176,13 +179,6 @@ class Keep(Executor):
         count = len(self._results) if self.folder is None else sum(1 for _ in self.folder.glob("kept-*"))
         self._first = self._first or count
         return count > EXECUTION.runs_kept * self._first
-
-    def discard(self, files: Sequence[Path]) -> None:
-        if self.work is None:
-            self.executor.discard(files)
-
-    def in_threads(self) -> Executor:
-        return Keep(THREADS, self.work)
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         return self.executor.disk_error(error) if self.work is None else work_folder_error(self.work, error)

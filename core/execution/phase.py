@@ -104,9 +104,11 @@ class Executor:
     """Who runs phases. What is not said otherwise is that of threads of this process.
 
     folder : that all workers see, for what phases write; None where the workers are threads of this process
+    work : the same where it is the user's, and all that phases write stays there
     """
 
     folder: Path | None = None
+    work: Path | None = None
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Any] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
@@ -128,15 +130,6 @@ class Executor:
         lists = Items(-(-len(items) // size), lambda k: [items[number] for number in range(k * size, min((k + 1) * size, len(items)))])
         for results in self.run(phase, lists, progress, [list(keep[k:k + size]) for k in range(0, len(keep), size)]):
             yield from results
-
-    def discard(self, files: Sequence[Path]) -> None:
-        """Remove files of points that no phase reads any more."""
-        for file in files:
-            file.unlink(missing_ok=True)
-
-    def in_threads(self) -> Executor:
-        """Who runs phases that workers cannot."""
-        return THREADS
 
     def disk_error(self, error: OSError) -> RoadExtractionError:
         """One sentence about the folder, which cannot be used."""
@@ -228,11 +221,6 @@ def write_results(file: Any, value: Any, unfinished_in: Path | None = None) -> N
     """Write the result of an item to a file, or those of a list of items to a list of files."""
     for path, one in zip(paths_of(file), value if isinstance(file, list) else [value]):
         write_plain(path, one, unfinished_in)
-
-
-def read_results(file: Any) -> Any:
-    """What `write_results` wrote."""
-    return [read_plain(path) for path in file] if isinstance(file, list) else read_plain(file)
 
 
 def paths_of(file: Any) -> list[Path]:

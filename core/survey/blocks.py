@@ -593,8 +593,6 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
     chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
     phase = Phase(_read_part, source, (), source.place, _join_parts)
     points = block if store.folder is None else READING.part_points   # threads read block by block
-    if store.folder is not None:
-        store.folder.mkdir(exist_ok=True)
     for part in executor.run(phase, source.items(points), progress):
         summary.join(part.summary)
         chosen.histogram.join(part.drops)

@@ -28,13 +28,11 @@ from .las.samples import check_measured_once, coarse_coordinates, distinct_rows,
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .survey import SURVEY_FOLDER, Survey, SurveySettings, survey_in_file
+from .survey import Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
 from .weights import FRAME, READING, STORE, TRAJECTORY, VEHICLE
-
-READING_FOLDER = "read"   # folder of points as they were read, in no order
 
 
 def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -73,10 +71,10 @@ def _survey_of_run(executor, read, progress):
         reading = executor
         if not executor.sees([Path(file.path).absolute() for file in read[0]]):
             progress.info("The workers do not see the point clouds where this computer does, which therefore reads them alone.")
-            reading = executor.in_threads()
+            reading = Keep(THREADS, executor.work) if executor.work else THREADS
         return read_survey(*read, progress, reading, executor)
 
-    if not isinstance(executor, Keep):
+    if executor.work is None:
         return read_here(progress)
     survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
@@ -116,7 +114,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     folder = reading.folder
     section = settings.section_length or section_length(files, frame)
-    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), section, folder and folder / READING_FOLDER)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), section, folder)
     choice = PointChoice(settings.corridor, has_time, week_ends, settings.above_road, intensity)
     several_passes = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     read_at = READING.read_progress if several_passes else 1.0
@@ -134,7 +132,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     _tell_scanners_apart(survey, read, progress.part(parts_at, parts_at))
     if folder is not None:
         survey.executor = ordering
-        survey.put_in_order(folder / SURVEY_FOLDER, ordering, progress.part(parts_at, read_at))
+        survey.put_in_order(folder, ordering, progress.part(parts_at, read_at))
     left = _lay_scanners_and_passes(survey, several_passes, bool(feet), progress)
     _see_passes(survey, settings.fit_passes, progress)
     # what the user says overrules what lies beside the trajectory; what passes differ by is part of the same error

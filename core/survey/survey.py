@@ -24,7 +24,6 @@ from .store.records import COORDINATE_SCALE, Points, road_of
 from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import FRAME, LAS, READING
 
-SURVEY_FOLDER = "survey"   # folder of the points of a survey that other processes open, beside its file
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 
 
@@ -80,7 +79,7 @@ class Survey:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
         if self.file is None:
             if self.store.folder is None:
-                self.put_in_order(folder / SURVEY_FOLDER)
+                self.put_in_order(folder)
             file = folder / f"survey-{uuid4().hex}.plain"
             write_plain(file, (self.contents(), []))
             self.file = file
@@ -99,11 +98,10 @@ class Survey:
         items = [(road, first - source.beyond * (before != road), end + source.beyond * (after != road))
                  for (road, first, end), before, after in zip(items, roads, roads[2:])]
         before = self.store.paths()
-        if folder is not None:
-            folder.mkdir(exist_ok=True)
         self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), folder)
         close_files()
-        executor.discard(before)
+        for file in before if executor.work is None else ():
+            file.unlink()
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -136,7 +134,7 @@ def survey_in_file(file: str) -> Survey:
     """The survey of `Survey.contents` in a file, without the files that it was read from."""
     path = Path(file)
     fields, _ = read_plain(path)
-    return Survey(files=[], store=opened_store(path.parent / SURVEY_FOLDER, **fields.pop("store")), file=path, **fields)
+    return Survey(files=[], store=opened_store(path.parent, **fields.pop("store")), file=path, **fields)
 
 
 # The phase that puts points in order: sections are read from where they were stored, finished, sorted, and written to a folder.

@@ -99,7 +99,7 @@ def test_a_survey_without_times_is_read_alike(street, python):
 def killed_while_it_reads(executor):
     """Kill a worker that has begun to read."""
     def kill():
-        while not (list(executor.folder.glob("read/points-*")) and executor._all):
+        while not (list(executor.folder.glob("points-*")) and executor._all):
             time.sleep(0.005)
         next(iter(executor._all)).process.kill()
 
@@ -126,7 +126,7 @@ def test_a_cancel_ends_the_reading_workers_within_two_seconds(street, python):
         at = None
 
         def report(self, fraction):
-            if list(executor.folder.glob("read/points-*")):
+            if list(executor.folder.glob("points-*")):
                 self.at = self.at or time.monotonic()
                 raise Cancelled
 
@@ -197,7 +197,7 @@ def zeros(path):
     path.write_bytes(content[:-64] + bytes(64))
 
 
-@pytest.mark.parametrize("pattern", ["kept-*.plain", "survey/points-*.bin", "read/points-*.bin"])
+@pytest.mark.parametrize("pattern", ["kept-*.plain", "points-*.bin"])
 def test_points_that_a_power_failure_damaged_are_read_again(street, by_threads, tmp_path, pattern):
     work = tmp_path / "work"
     assert opened(street, work_folder=str(work)) == by_threads
@@ -210,7 +210,7 @@ def test_of_a_reading_that_a_power_failure_ended_damaged_parts_are_not_used(stre
     work = tmp_path / "work"
     with pytest.raises(Cancelled):
         opened(street, progress=StopsReading(work, 3), work_folder=str(work))
-    for path in work.glob("read/points-*.bin"):
+    for path in work.glob("points-*.bin"):
         zeros(path)
     assert opened(street, work_folder=str(work)) == by_threads
 
