@@ -13,7 +13,7 @@ import numpy as np
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading, confidence_of
+from ..markings.cross_section.weights import SAME_LANE, EstimateWeights, Reading
 from ..survey.frame.row_table import RowSpans
 from .weights import TRACKS
 
@@ -40,7 +40,6 @@ class LaneTrack:
     right_use: np.ndarray
     probability: np.ndarray   # (N,) 0 to 1, as of LaneSpan
     confidence: np.ndarray
-    directed: np.ndarray
     direction: int   # 1 along the road's reference line, -1 against it
     second: np.ndarray = None  # type: ignore[assignment]  # filled on construction
     aside: np.ndarray = None  # type: ignore[assignment]
@@ -111,10 +110,9 @@ class LaneTrack:
                 doubtful[first:end] = True
         return doubtful
 
-    def said_confidence(self, weights: EstimateWeights = EstimateWeights()) -> np.ndarray:
+    def said_confidence(self) -> np.ndarray:
         """(N,) how often such lanes are right, at most `most_in_doubt` where there is a second reading."""
-        confidence = confidence_of(self.confidence, self.directed, weights)
-        return np.where(self.in_doubt, np.minimum(confidence, weights.most_in_doubt), confidence)
+        return np.where(self.in_doubt, np.minimum(self.confidence, EstimateWeights.most_in_doubt), self.confidence)
 
     def said(self, rows: slice, weights: EstimateWeights = EstimateWeights()) -> dict[str, Any]:
         """The confidence of part of the lane, and `other`, its second reading as JSON where most of the part is in doubt, else "".
@@ -180,13 +178,12 @@ def _between(a, b):
     # it is moved as far as either, and as doubtful
     d, width, aside = (before + (after - before) * share for before, after in (
         (a.d[-1], b.d[0]), (a.end_width(False), b.end_width(True)), (a.aside[-1], b.aside[0])))
-    ends = (a.probability, b.probability), (a.confidence, b.confidence)
-    sure = (np.full(count, TRACKS.bridged_trust * min(before[-1], after[0])) for before, after in ends)
-    directed = np.full(count, min(a.directed[-1], b.directed[0]))
+    ends = (a.probability, b.probability, TRACKS.bridged_trust), (a.confidence, b.confidence, TRACKS.trust_bridged)
+    sure = (np.full(count, trust * min(before[-1], after[0])) for before, after, trust in ends)
     second = np.full(count, None, object)
     second[:] = [min((reading for reading in (a.second[-1], b.second[0]) if reading is not None),
                      key=lambda reading: reading.nats, default=None)] * count
-    return LaneTrack(a.last + 1, d, width, np.full(count, BRIDGED), np.ones(count, bool), *[np.full(count, -1)] * 4, *sure, directed, a.direction,
+    return LaneTrack(a.last + 1, d, width, np.full(count, BRIDGED), np.ones(count, bool), *[np.full(count, -1)] * 4, *sure, a.direction,
                      second, aside)
 
 

@@ -15,7 +15,7 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
-from ..markings.cross_section.weights import SAME_LANE, SURFACE_END, UNPAINTED
+from ..markings.cross_section.weights import BARE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import ALIGNMENT, TRACKS
@@ -104,9 +104,8 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: Road
                 ahead, course = (values[1:count][::step] for values in (ahead, course))
                 unknown = np.full(len(course), -1)
                 more = track.stretched(int(ahead[0]), course, np.full(len(course), width), 0 if head else -1)
-                # nothing painted shows it, so it is as much less sure as a bridged one
                 more = replace(more, status=np.full(len(course), INFERRED), offset=np.zeros(len(course), bool), left=unknown, right=unknown,
-                               probability=TRACKS.bridged_trust * more.probability, confidence=TRACKS.bridged_trust * more.confidence)
+                               probability=TRACKS.bridged_trust * more.probability, confidence=TRACKS.trust_beyond_paint * more.confidence)
                 result[number] = LaneTrack.joined([more, track] if head else [track, more])
         check_cancelled()
     return result
@@ -188,21 +187,21 @@ def _parts(boundaries, estimate, lane_width, line_distance):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
-        if bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
-            part = _where_driven(part, boundaries.s, estimate, span, lane_width)
+        if BARE in drawn or bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
+            part = _where_driven(part, boundaries.s, estimate, span, lane_width, BARE in drawn)
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
             drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
 
-def _where_driven(part, s, estimate, span, lane_width):
+def _where_driven(part, s, estimate, span, lane_width, ends_bare):
     """The LaneTrack of a lane of a strip that has no paint on both its sides, moved from its share of the strip to where it was driven.
 
     Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
     several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or are as unlike as lanes of a road are,
-    both as probable. Vehicles keep to the middle with some scatter; beside a line they rarely give way to something and show nothing. All these are
-    normal errors about the middle, so it is moved as far as the drive is surer.
+    both as probable. A lane that `ends_bare`, without a line, is off by SAME_LANE. Vehicles keep to the middle with some scatter; beside a line they
+    rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive is surer.
     """
     evidence, weights = estimate.evidence, estimate.weights
     passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
@@ -211,7 +210,7 @@ def _where_driven(part, s, estimate, span, lane_width):
     count = inside.sum(axis=0)
     beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    anywhere, alone = (span.count * room) ** 2 / 12, span.count == 1
+    anywhere, alone = SAME_LANE**2 + 0.0 * room if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
     full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
     of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
     variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
@@ -252,11 +251,11 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     # a curb that a lane reaches to shows its place too
-    reaches = beside_one and not beside_surface_end(*made_of) \
+    reaches = BARE in made_of or beside_one and not beside_surface_end(*made_of) \
         and np.nanmedian(np.abs(boundaries.d[span.left, rows] - boundaries.d[span.right, rows] - width * span.count)) < SAME_LANE
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
-    values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence, span.directed)
+    values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence)
     second = np.full(len(d), None, object)
     second[:] = [span.second] * len(d)
     return LaneTrack(int(rows.start), d, width, status, *(np.full(len(d), value) for value in values), span.direction, second)

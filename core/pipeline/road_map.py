@@ -27,7 +27,8 @@ from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.in_step import in_step
-from ..execution.keep import WINDOW, Keep, KeptRun
+from ..execution.keep import Keep
+from ..execution.kept_run import WINDOW, KeptRun
 from ..execution.phase import digest
 from ..execution.tasks import code_digest
 from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected

@@ -12,7 +12,7 @@ from scipy.special import ndtr
 from ...countries.catalogue import NEUTRAL
 from .candidates import Candidates
 from .evidence import Evidence
-from .weights import CURB, DOUBLE, ISLAND, PAVEMENT, SAME_LANE, SURFACE_END, EstimateWeights
+from .weights import BARE, CURB, DOUBLE, ISLAND, OPEN, PAVEMENT, SAME_LANE, SURFACE, SURFACE_END, EstimateWeights
 
 WIDTH, SECOND_WIDTH, NATS, BEYOND = range(4)   # columns of `lanes_beside`
 
@@ -34,7 +34,8 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     step = np.where(side == 0, -1, 1)
     # the surface may seem to end before the curb, at what hides it
     beyond = m + step
-    beyond = np.where(SURFACE_END[c.made_of[i, beyond]], (beyond + step).clip(0, c.left.shape[1] - 1), beyond)
+    for skipped in (BARE, BARE, (SURFACE, OPEN)):
+        beyond = np.where(np.isin(c.made_of[i, beyond], skipped), (beyond + step).clip(0, c.left.shape[1] - 1), beyond)
     made = c.made_of[i, beyond]
     line, far = np.where(side == 0, c.left[i, m], c.right[i, m]), np.where(side == 0, c.right[i, beyond], c.left[i, beyond])
     row = 2 * c.rows[i, m, side] + side

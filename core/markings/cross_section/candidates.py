@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ...countries.catalogue import NEUTRAL
 from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.records import FAR
 from ..weights import LANES
 from .sections import STATION_STEP, CrossSections
-from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
+from .weights import BARE, CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, PAVEMENT, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
 STATIONS_OF_CELL = 5   # derived: stations of the grid that are always in one interval: 2.5 m
@@ -50,10 +51,10 @@ class Boundaries:
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
                       open_ends: np.ndarray | None = None, hatching: RowTable | None = None,
-                      pavement: CrossSections | None = None) -> Boundaries:
+                      pavement: CrossSections | None = None, usual: float = NEUTRAL.usual_lane) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. `usual` : m, the usual width of a lane
     """
     count = len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
@@ -73,6 +74,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         ends.append((RowTable.of_rows([(0, row) for row in open_ends], count), OPEN, OPEN))
     if hatching is not None:
         ends.append((hatching, HATCHING, HATCHING))
+    ends.append((_bare_borders(lines.d, usual), BARE, BARE))
     for d, end_kind, at_places in ends:
         patterns = np.empty(d.spans.size, np.int8)
         patterns[:] = at_places
@@ -84,6 +86,26 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
                       found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
+
+
+def _bare_borders(d, usual):
+    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside the same line."""
+    row, station = d.spans.owner, d.spans.station
+    order = np.lexsort((-d.values, station))
+    order = order[np.isfinite(d.values[order])]
+    pairs = np.stack([order[:-1], order[1:]])[:, np.diff(station[order]) == 0]
+    room = -np.diff(d.values[pairs], axis=0)[0]
+    lane = (room >= NEUTRAL.narrowest_lane) & (room <= NEUTRAL.widest_lane)
+    count, total = (np.bincount(row[pairs[:, lane]].ravel(), np.tile(values, 2), len(d)) for values in (np.ones(lane.sum()), room[lane]))
+    width = np.where(count > 0, total / np.maximum(count, 1), usual)[row]
+    borders = []
+    for beside, sign in zip(pairs, (-1, 1)):
+        usual_there = width[beside]
+        beside = beside[(room > usual_there + LANES.least_left_over) & (room < LANES.max_lanes * usual_there)]
+        values = np.full(len(row), np.nan)
+        values[beside] = d.values[beside] + sign * width[beside]
+        borders += [(int(d.spans.first[k]), values[d.spans.values_of(k)]) for k in np.unique(row[beside]).tolist()]
+    return RowTable.of_rows(borders, d.spans.stations)
 
 
 def _on_stations(sections, s):

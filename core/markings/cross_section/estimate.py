@@ -32,7 +32,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading
+from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
@@ -213,8 +213,7 @@ class LaneSpan:
     beside: np.ndarray   # (4,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
     direction: int
     probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
-    confidence: float   # 0 to 1, of a lane of either direction there, with the sureness of RoadEstimate
-    directed: float   # 0 to 1, of those of this direction among them, on both sides of traffic where the survey leaves that open
+    confidence: float   # 0 to 1, how often such lanes are right, see `confidence_of`
     left_border: int   # what the two separate, LANE_LINE ... OTHER_LINE
     right_border: int
     second: Reading | None = None
@@ -246,10 +245,8 @@ def _lane_spans(estimate, part):
         uses[0], uses[-1] = borders[i - part.start, [m, end]].tolist()
         for lane in range(number):
             direction = estimate.first_direction if lane < first else -estimate.first_direction
-            probability, confidence, directed = shares[k].tolist()
-            spans.append(LaneSpan(
-                i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, beside[row], direction, probability, confidence, directed,
-                uses[lane], uses[lane + 1], seconds[k]))
+            spans.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - lane, number, beside[row], direction,
+                                  *shares[k].tolist(), uses[lane], uses[lane + 1], seconds[k]))
             k += 1
     return spans
 
@@ -288,10 +285,11 @@ def _lanes(c, lane_width, first_direction, strips):
 
 
 def _place_shares(estimate, lanes, chosen, part):
-    """The rows of the lanes of the chosen strips, from left to right, and (L, 3) of them: probability, confidence and directed of LaneSpan.
+    """The rows of the lanes of the chosen strips, from left to right, and (L, 2) of them: probability and confidence of LaneSpan.
 
-    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it. Of directions the most probable
-    sequences are weighed against each other where the other side of traffic counts too: a road that is one way is the same reading on both.
+    That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it, and of those of its direction
+    among them. Of directions the most probable sequences are weighed against each other where the other side of traffic counts too: a road that is
+    one way is the same reading on both.
     """
     other = estimate.other
     best = estimate.once_total
@@ -319,7 +317,7 @@ def _place_shares(estimate, lanes, chosen, part):
         for values, rows in zip(least_nats, (alike, same_place & ~alike)):
             np.minimum.at(values, lane[rows], nats[compared[rows]])
         directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
-    return chosen_lanes, np.stack([probability, either, directed], axis=1)[chosen_lanes]
+    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes]
 
 
 def _second_readings(estimate, lanes, rows, way, part):

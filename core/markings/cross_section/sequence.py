@@ -20,6 +20,7 @@ from .beside import BEYOND, WIDTH
 from .candidates import Candidates
 from .evidence import Evidence
 from .weights import (
+    BARE,
     CENTRE_LINE,
     CURB,
     DASHED,
@@ -127,7 +128,9 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     cost = np.full((len(KINDS), count, size, size), np.inf)
     lanes, first_lanes = np.zeros((2, len(KINDS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
-    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, w.unused_asphalt[1]))
+    # beside a line bare asphalt is the lane that ends there
+    beside_line = paint[:, :, None] & (c.made_of == BARE)[:, None, :] | paint[:, None, :] & (c.made_of == BARE)[:, :, None]
+    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, np.where(beside_line, *w.unused_asphalt)))
     # two lines on both sides are the border of a painted median: each is drawn as between the directions
     double = c.made_of == DOUBLE
     unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)

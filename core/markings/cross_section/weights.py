@@ -8,11 +8,11 @@ import numpy as np
 from scipy.special import erf
 
 # What a boundary is made of
-SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND, PAVEMENT = range(10)
+SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND, PAVEMENT, BARE = range(11)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
-# whether nothing is painted there, and whether the surface ends without an edge or nothing is known of it, by what a boundary is made of
-UNPAINTED, SURFACE_END = (np.isin(np.arange(PAVEMENT + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN)))
+# whether the road has a border there without paint, and whether nothing is seen of what ends there, by what a boundary is made of
+UNPAINTED, SURFACE_END = (np.isin(np.arange(BARE + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN, BARE)))
 
 
 def _costs(*shares: float) -> tuple[float, ...]:
@@ -39,6 +39,8 @@ class EstimateWeights:
     curb: tuple[float, ...] = _costs(0.001, 0.02, 0.9, 0.7)   # of boundaries that are a curb, also of an island
     surface: tuple[float, ...] = _costs(0.001, 0.001, 0.6, 0.8)   # where the road surface ends without one, seen as an edge or not
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)   # where nothing is known beyond the outermost line
+    # where a lane beside a line ends on bare asphalt, as beside a median, a shoulder or a lane that opens: one such border of ten has no line
+    bare: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)   # that are the border of a hatched area
     named: float = 3.0   # of a line that separates something else than its layer says
     stroke: float = 3.0   # m of paint that strokes of symbols have too
@@ -114,10 +116,10 @@ class EstimateWeights:
 
     @property
     def boundary(self) -> np.ndarray:
-        """(10, 4) costs by what a boundary is made of and what it separates."""
+        """(11, 4) costs by what a boundary is made of and what it separates."""
         impossible = (np.inf,) * 4
         return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching, self.curb,
-                         self.surface])
+                         self.surface, self.bare])
 
     @property
     def wide_line(self) -> np.ndarray:
@@ -156,7 +158,7 @@ def confidence_of(there: np.ndarray, directed: np.ndarray, weights: EstimateWeig
     """(N,) the share of such lanes within 15 cm of the true driving line that run the right way: of those that lie there, those that lead this way.
 
     Of two directions that are equally probable neither is right more often, so the curve of the direction goes through one half.
-    `there`, `directed` : (N,) 0 to 1, confidence and directed of LaneSpan.
+    `there`, `directed` : (N,) 0 to 1, how probable a lane of either direction is there, and this direction among them.
     """
     return calibrated(there, weights) * _on_curve(directed, weights.calibration_of_direction, 0.0)
 

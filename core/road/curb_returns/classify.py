@@ -35,6 +35,7 @@ class CurbReturn:
     side: str   # "left" or "right"
     kind: str   # "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
     closed: bool = False   # does it go all around an island?
+    apart: bool = False   # does nothing but its height tell that it is one?
     sigma: np.ndarray | None = None
 
 
@@ -133,7 +134,7 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
     if _may_be_side_street(curb, s, line, behind, linked):
         straight = _straight_part(curb)
         return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")
-    return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "")
+    return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "", apart=True)
 
 
 def _of_the_road(apart, known, usual):

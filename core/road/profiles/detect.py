@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from contextlib import closing
 from dataclasses import replace
 from typing import Any
@@ -51,7 +52,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     around = max(CURBS.spread_profiles, int(np.ceil(PROFILE.averaging_length / width)))
     tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
     occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], CURBS.max_curb_offset) for side in SIDE_SIGNS}
-    steps_by_side: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
+    steps_by_side: defaultdict[str, list[CurbSteps]] = defaultdict(list)
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
@@ -63,7 +64,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
         steps = _steps_by_noise(lines, section, settings, limit is None, side not in full)
         steps_by_side[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
-    return {side: merged_passes(steps) for side, steps in steps_by_side.items() if steps}, occlusion
+    return {side: merged_passes(steps) for side, steps in steps_by_side.items()}, occlusion
 
 
 def _steps_by_noise(lines, section, settings, overgrown, thin):

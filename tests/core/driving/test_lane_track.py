@@ -57,7 +57,7 @@ def lane(d, status, beside_one, rows=-1):
     """A lane from a grid station on, beside one line or between the two of `rows`."""
     count, sure = len(d), np.ones(len(d))
     return LaneTrack(0, np.array(d, float), np.full(count, 3.5), np.full(count, status), np.full(count, beside_one), *[np.full(count, rows)] * 4,
-                     sure, sure, sure, 1)
+                     sure, sure, 1)
 
 
 @pytest.mark.parametrize("metres", [3.0, 5.0])
@@ -89,7 +89,7 @@ def test_a_lane_beside_one_line_ends_where_it_is_less_probable_than_four_in_five
     count = len(S)
     unsure = np.arange(count) >= 80
     track = LaneTrack(0, np.zeros(count), np.full(count, 3.5), np.full(count, INFERRED), unsure & beside_one, np.full(count, 1), np.full(count, 2),
-                      np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), np.full(count, 0.5), np.ones(count), 1)
+                      np.full(count, -1), np.full(count, -1), np.where(unsure, 0.7, 0.99), np.full(count, 0.5), 1)
     assert len(track.without_doubtful_ends()) == left
 
 

@@ -331,7 +331,7 @@ def test_lanes_of_two_roads_get_their_own_heights_in_one_phase(monkeypatch):
     monkeypatch.setattr(Threads, "run", lambda self, phase, *others: phases.append(phase.function.__name__) or run(self, phase, *others))
     s, count = np.arange(20.0, 100.0, 0.5), 160
     track = LaneTrack(0, np.full(count, -1.75), np.full(count, 3.5), np.full(count, MEASURED), np.zeros(count, bool),
-                      *[np.full(count, -1)] * 4, *[np.ones(count)] * 3, 1)
+                      *[np.full(count, -1)] * 4, *[np.ones(count)] * 2, 1)
     ((low,), (high,)), = in_step([road_heights(points, [(0, s, [track]), (1, s, [track])])], Threads(1))
     np.testing.assert_allclose(high - low, 1.0, atol=1e-4)
     assert phases == ["heights_of_windows"]
@@ -377,6 +377,6 @@ def test_a_lane_goes_on_behind_where_its_road_crosses_itself():
     s = np.arange(20.0, 270.0, 0.5)
     count = len(s)
     track = LaneTrack(0, np.full(count, -1.6), np.full(count, 3.0), np.full(count, MEASURED), np.zeros(count, bool), *[np.full(count, -1)] * 4,
-                      *[np.ones(count)] * 3, 1)
+                      *[np.ones(count)] * 2, 1)
     ((courses,), _), = in_step([fitted_lanes([LanesOfRoad([track], s, road)])], Threads(1))[0]
     assert courses.s[[0, -1]] == pytest.approx(s[[0, -1]], abs=0.5) and np.diff(courses.s).max() < 2.0

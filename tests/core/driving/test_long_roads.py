@@ -47,7 +47,7 @@ def lanes_of(blocks):
         for first, count, d in ((at, 120, -1.75), (at, 120, 1.75), (at + 60, 60, -5.25)):
             values = dict(d=np.full(count, d), width=np.full(count, 3.5), status=np.zeros(count, int), offset=np.zeros(count, bool),
                           **{name: np.full(count, -1) for name in ("left", "right", "left_use", "right_use")},
-                          **{name: np.ones(count) for name in ("probability", "confidence", "directed")})
+                          **{name: np.ones(count) for name in ("probability", "confidence")})
             found.append(LaneTrack(first, direction=1 if d < 0 else -1, **values))
     return found
 

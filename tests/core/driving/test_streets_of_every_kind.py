@@ -289,6 +289,12 @@ def test_beyond_the_last_dash_a_lane_goes_on_as_it_was_driven(borders):
     assert all(np.abs(street.offsets(line) + 1.75).max() < 0.05 for line in driven)
 
 
+def test_beyond_its_paint_a_lane_is_no_surer_than_such_lanes_are_right():
+    street = Street(vehicle=-1.75).paint(0.0, 5.0, 98.0, pattern="dashed")
+    sure = {line.bounds[2] - EAST > 99.0: row["confidence"] for line, row in street.lanes(edges=curbs(street, -3.5))[0] if row["direction"] == 1}
+    assert sure[True] < 0.81 and sure[True] < 0.9 * sure[False]
+
+
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize(("begins", "ends_at"), [(106.0, 105.5), (101.0, 97.5)])
 def test_beyond_its_paint_a_lane_leads_no_farther_than_an_island_on_it_and_three_metres_to_one_are_not_worth_it(begins, ends_at, side):
@@ -323,6 +329,14 @@ def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lan
     for offset in (1.77, 1.53, -1.53, -1.77):
         street.paint(offset, kind="", pattern="double-solid")
     assert lanes_of(street) == {-3.46: 1, 3.46: -1}
+
+
+def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven():
+    """Two lanes of 3.4 m each way, dashes between those of a direction, and 2.8 m of bare asphalt between the directions."""
+    street = Street(vehicle=-3.1)
+    for side in (1, -1):
+        street.paint(side * 8.2, kind="edge").paint(side * 4.8, kind="", pattern="dashed")
+    assert lanes_of(street) == {-6.5: 1, -3.1: 1, 3.1: -1, 6.5: -1}
 
 
 def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():
