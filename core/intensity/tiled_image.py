@@ -31,7 +31,7 @@ def stored_tiles(arrays: SharedArrays, tiles: Iterable[tuple[int, int, np.ndarra
             box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
             parts.append((column + int(columns[0]), row + int(rows[0]), np.where(filled[box], values[box], np.float32(np.nan))))
     places = arrays.put([pixels for _, _, pixels in parts])
-    return [(column, row, *pixels.shape, place) for (column, row, pixels), place in zip(parts, places)]
+    return [(column, row, len(pixels), pixels.shape[1], place) for (column, row, pixels), place in zip(parts, places)]
 
 
 class TiledImage(IntensityImage):
