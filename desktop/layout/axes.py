@@ -278,15 +278,14 @@ def _along(layer, name, quantile):
     """The quantile (None: the mean) of a field along the lines of a layer; NaN where there is none."""
     if layer is None or layer.fields().indexOf(name) < 0:
         return math.nan
-    rows = [(feature[name], feature.geometry().length()) for feature in layer.getFeatures()]
-    values = np.array([row for row in rows if isinstance(row[0], (int, float))], float).reshape(-1, 2)
-    values = values[np.isfinite(values).all(axis=1) & (values[:, 1] > 0)]
-    if not len(values):
+    rows = [(value, feature.geometry().length()) for feature in layer.getFeatures() if isinstance(value := feature[name], (int, float))]
+    rows = sorted(row for row in rows if math.isfinite(row[0]) and row[1] > 0)
+    if not rows:
         return math.nan
+    values, lengths = np.array(rows, float).T
     if quantile is None:
-        return float(np.average(values[:, 0], weights=values[:, 1]))
-    values = values[np.argsort(values[:, 0])]
-    return float(values[np.searchsorted(np.cumsum(values[:, 1]), quantile * values[:, 1].sum()), 0])
+        return float(np.average(values, weights=lengths))
+    return float(values[np.searchsorted(np.cumsum(lengths), quantile * lengths.sum())])
 
 
 # Sheets along the axes of roads: rectangles of one size, each turned so that the road runs along it from left to right.

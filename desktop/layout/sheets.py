@@ -477,17 +477,14 @@ class _Pages:
             places = shapely.get_coordinates(line)
             drawing.line(places, width=0.4, dash="6 1.5 1 1.5")
             top, bottom = places[np.argsort(places[:, 1])]
-            way = bottom - top
+            way = (bottom - top) / max(np.hypot(*(bottom - top)), 1e-9)
             outwards = np.sign((sheet.on_page(np.array([[match.x, match.y]]))[0] / per_mm - (drawing.width / 2, drawing.height / 2))[0]) or 1.0
-            normal = np.array([way[1], -way[0]]) / max(np.hypot(*way), 1e-9)
-            normal *= outwards * (1.0 if normal[0] >= 0 else -1.0)
             turned = math.degrees(math.atan2(way[1], way[0])) - 90
             turned = turned - 90 if abs(turned) < 60 else turned + 90
             text = tr("Match line, sheet {number}").format(number=match.neighbour)
-            room = text_width(text, 8.0) / 2 + 3
-            for end, ahead in ((top, 1), (bottom, -1)):
-                place = end + ahead * way / max(np.hypot(*way), 1e-9) * room + normal * 2.2
-                drawing.text(*place, text, 8.0, turned=turned, boxed=True, yields=True)
+            room = (text_width(text, 8.0) / 2 + 3) * way
+            for place in (top + room, bottom - room):
+                drawing.text(*(place + 2.2 * outwards * np.array([way[1], -way[0]])), text, 8.0, turned=turned, boxed=True, yields=True)
 
     def _draw_stations(self, drawing, sheet):
         """The axis with a tick every 10 m (more at small scales) and stations beside the road."""
@@ -539,25 +536,17 @@ class _Pages:
                     for dx, dy in ((arm, 0), (0, arm)):
                         paper.line(place([[east - dx, north - dy], [east + dx, north + dy]]), GREY, 0.15)
         upright = abs(math.cos(sheet.heading)) >= abs(math.sin(sheet.heading))   # lines of equal east are the steeper ones on the page
+        sides, low, high = np.array(sheet.outline().exterior.coords), corners.min(0) * self.unit, corners.max(0) * self.unit
         for values, axis, word in ((easts, 0, tr("E")), (norths, 1, tr("N"))):
             level = (axis == 0) == upright   # they meet the upper and lower frame
+            rim = shapely.multilinestrings([sides[k:k + 2] for k in ((0, 2) if level else (1, 3))])
             for value in values:
-                for x, y in _on_frame(sheet, value * self.unit, axis, level, frame.map, per_mm):
+                line = np.array([low, high])
+                line[:, axis] = value * self.unit
+                for x, y in place(shapely.get_coordinates(rim.intersection(shapely.linestrings(line))) / self.unit):
                     out = np.array([0, math.copysign(1, y - frame.map.center().y())] if level else [math.copysign(1, x - frame.map.center().x()), 0])
                     paper.line([(x, y), (x, y) + out * 1.2], width=0.25)
                     paper.text(*((x, y) + out * 2.9), f"{word} {value:.0f}", 5.5, turned=0 if level else -90, yields=True)
-
-
-def _on_frame(sheet: Sheet, value: float, axis: int, level: bool, box: QRectF, per_mm: float) -> Iterator[tuple[float, float]]:
-    """Where the line of one coordinate (axis 0: east, 1: north) meets the upper and lower (`level`), or left and right, side of the map; mm."""
-    cos, sin = math.cos(sheet.heading), math.sin(sheet.heading)
-    right, up = ((cos, sin)[axis], (-sin, cos)[axis])   # change of the coordinate per metre right and up on the page
-    delta = value - (sheet.x, sheet.y)[axis]
-    w, h = sheet.width / 2, sheet.height / 2
-    for end in (-1, 1):
-        u, v = ((delta - up * end * h) / right, end * h) if level else (end * w, (delta - right * end * w) / up)
-        if abs(u) <= w + 1e-9 and abs(v) <= h + 1e-9:
-            yield box.x() + (u + w) / per_mm, box.y() + (h - v) / per_mm
 
 
 def _corners(box: QRectF) -> list[tuple[float, float]]:

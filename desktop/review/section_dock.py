@@ -45,6 +45,9 @@ class SectionDock(QDockWidget):
         self.pick = button(tr("Click in the map"), lambda: take_map(iface.mapCanvas(), self.tool))
         back = button("◀", lambda: self.step(-STEP), tr("A metre back along the road"))
         ahead = button("▶", lambda: self.step(STEP), tr("A metre ahead along the road"))
+        for arrow, key in ((back, ","), (ahead, ".")):
+            arrow.setShortcut(key)
+            arrow.setToolTip(f"{arrow.toolTip()} ({key})")
         self.thickness = QDoubleSpinBox(minimum=0.02, maximum=5.0, singleStep=0.05, value=THICKNESS, suffix=" m", toolTip=tr(
             "Length of road from which points are shown"), valueChanged=lambda value: self._draw())
         self.setWidget(column(QWidget(), row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None), (self.view, 1), rim=4))

@@ -10,7 +10,7 @@ from lanewright.desktop.review import section_dock
 from qgis.core import QgsPointXY, QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
-from qgis.PyQt.QtWidgets import QMainWindow
+from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
 from road_map_layers import EAST, NORTH, added, run_at
 
 
@@ -51,6 +51,16 @@ def settled(dock):
 
 def show(dock, x):
     dock.show_at(QgsPointXY(EAST + x, NORTH), dock.iface.mapCanvas().mapSettings().destinationCrs())
+
+
+def test_comma_and_full_stop_step_the_section_back_and_ahead(dock):
+    show(dock, 100)
+    settled(dock)
+    by_key, began = {found.shortcut().toString(): found for found in dock.findChildren(QPushButton)}, dock.section.x
+    by_key["."].click()
+    assert dock.section.x == pytest.approx(began + section_dock.STEP)
+    by_key[","].click()
+    assert dock.section.x == pytest.approx(began)
 
 
 def test_who_comes_back_before_the_far_place_is_read_sees_the_points_of_the_near_one(dock):
