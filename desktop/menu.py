@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..algorithms.destinations import destination_path
 from ..algorithms.export import DRAWN
-from ..core.execution.keep import WINDOW
+from ..core.execution.kept_run import WINDOW
 from ..processing_provider.results.road_maps import (
     NAMES_ONLY,
     REPLACES_LAST_RUN,

@@ -210,8 +210,20 @@ def intensity_corrected(road_points: RoadPoints, frame: RoadFrame, asphalt: Asph
     if asphalt.reason or asphalt.table is None:
         progress.warn(asphalt.reason)
         return road_points, _IntensityReport(reason=asphalt.reason)
-    store, after = yield from _corrected_store(road_points, frame, asphalt)
-    report = _report(asphalt.counts, after, asphalt.table, asphalt.points_by_scanner)
+    table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
+    kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
+    store = road_points.store.with_column("corrected", road_points.store.folder)
+    arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
+
+    def take(result):
+        index, counts = result
+        store.adopt(index, store.folder)
+        after.add(counts, asphalt.step)
+        return []
+
+    phase = phase_of_stretches(corrected_of_stretch, road_points, arguments, replace(road_points, store=store))
+    yield Asked(phase, road_points.stretches(), 1.0, read=take)
+    report = _report(asphalt.counts, after.counts, table, asphalt.points_by_scanner)
     report.beams = sum(map(len, asphalt.beams.corrections.values())) if asphalt.beams else 0
     report.saturation = _Saturation.from_levels(asphalt.counts[ACROSS_TRACK].sum(axis=1), asphalt.highest)
     if report.saturation.warning:
@@ -228,24 +240,6 @@ def _reason_of_counts(table, lost, points):
     if table is None:
         return "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
     return ""
-
-
-def _corrected_store(road_points, frame, asphalt):
-    """Part of a work: the points with `corrected`, and the counts of their IntensityHistograms."""
-    table, after = asphalt.table, IntensityHistograms(asphalt.counts.shape[1])
-    kinds = np.unique(table.distance_kind[asphalt.points_by_scanner[:len(table.distance_kind)] > 0]).tolist()
-    store = road_points.store.with_column("corrected", road_points.store.folder)
-    arguments = list(frame.passes), asphalt.beams, table, table.lookup(), kinds, asphalt.step
-
-    def take(result):
-        index, counts = result
-        store.adopt(index, store.folder)
-        after.add(counts, asphalt.step)
-        return []
-
-    phase = phase_of_stretches(corrected_of_stretch, road_points, arguments, replace(road_points, store=store))
-    yield Asked(phase, road_points.stretches(), 1.0, read=take)
-    return store, after.counts
 
 
 def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, scanners: int,

@@ -251,9 +251,10 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
                       state=(lambda task: [image.states[tile] for tile, _ in task]) if executor.folder else None)   # in memory lie the pixels already
         for tiles in executor.run(phase, tasks, progress.part(0.3, 1.0)):
             image.add(tiles)
-            for column, row, *shape, place in tiles if file is not None else ():
-                pixels = image.arrays.get(place, shape)
-                file.write(column, row, np.where(np.isnan(pixels), np.float32(NODATA), pixels), whole=True)
+            if file is not None:
+                for column, row, height, width, place in tiles:
+                    pixels = image.arrays.get(place, (height, width))
+                    file.write(column, row, np.where(np.isnan(pixels), np.float32(NODATA), pixels), whole=True)
     progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
 

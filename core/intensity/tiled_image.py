@@ -99,7 +99,7 @@ class TiledImage(IntensityImage):
 
     def add(self, tiles: Sequence[StoredTile]) -> None:
         """Add tiles that `stored_tiles` wrote to the image's arrays."""
-        self._tiles.update({(column // GEOTIFF_TILE, row // GEOTIFF_TILE): (column, row, *others) for column, row, *others in tiles})
+        self._tiles.update({(tile[0] // GEOTIFF_TILE, tile[1] // GEOTIFF_TILE): tile for tile in tiles})
 
     def _fill(self, values: np.ndarray, column: int, row: int) -> None:
         height, width = values.shape

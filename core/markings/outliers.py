@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import THREADS, Executor, Phase, Recipe
+from ..execution.phase import THREADS, Executor, Phase
 from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE, take_rows
 from ..survey.store.road_points import RoadPoints
@@ -73,8 +72,8 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
     """
     executor = points.store.readers(executor)
-    source = _PaintStores(points.store, executor.folder)
-    kept = replace(RoadPoints.empty_like(points), store=source.kept)
+    store = points.store
+    kept = replace(RoadPoints.empty_like(points), store=SectionStore(store.dtype, store.section_length, store.folder, store.constants))
     if settings.scope == "all":
         _put(kept, points, _kept_of_all(points, settings))
     else:
@@ -86,9 +85,9 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
             windows = _windows(item[1] * length, item[2] * length)
             return points.state(item[0], windows[0] * OUTLIERS.window - NEIGHBOUR_HALO, (windows[-1] + 1) * OUTLIERS.window + NEIGHBOUR_HALO)
 
-        phase = Phase(kept_of_windows, source, (settings,), lambda item: f"markings {item[1] * length:.0f} m along road {item[0]}", state=state)
+        phase = Phase(kept_of_windows, points.store, (settings,), lambda item: f"markings {item[1] * length:.0f} m along road {item[0]}", state=state)
         for index in executor.run(phase, items, progress):
-            kept.store.adopt(index, executor.folder)
+            kept.store.adopt(index, store.folder)
     progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
@@ -106,24 +105,13 @@ def _put(kept, points, keep):
         first += len(records)
 
 
-class _PaintStores:
-    """The points of paint, and where those go that stay: a SectionStore in a folder, None for a temporary file."""
-
-    def __init__(self, points: SectionStore, folder: str | Path | None):
-        self.points, self.kept = points, SectionStore(points.dtype, points.section_length, Path(folder) if folder else None)
-
-    def recipe(self, folder: Path) -> Recipe:
-        """How other processes open both."""
-        return Recipe("core.markings.outliers:_PaintStores", dict(points=self.points.recipe(folder), folder=str(self.kept.folder)))
-
-
-def kept_of_windows(source: _PaintStores, item: Stretch, settings: OutlierSettings) -> StoreIndex:
+def kept_of_windows(store: SectionStore, item: Stretch, settings: OutlierSettings) -> StoreIndex:
     """The phase that finds outliers, window by window; returns where the points of the sections of a stretch lie that stay."""
-    store, (road, *ends) = source.points, item
+    road, *ends = item
     windows = _windows(*(end * store.section_length for end in ends))
     keep = np.concatenate([_kept_of_window(store, road, number, settings) for number in windows])
     s = store.window(road, windows[0] * OUTLIERS.window, (windows[-1] + 1) * OUTLIERS.window).records["s"]
-    with source.kept.part() as part:
+    with store.part() as part:
         for key in store.in_stretch(item):
             first, end = np.searchsorted(s, [store.first_unit(key[1]), store.first_unit(key[1] + 1)])
             part.put(*key, take_rows(store.section(*key), keep[first:end]))

@@ -27,7 +27,8 @@ from ..countries.catalogue import country
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.in_step import in_step
-from ..execution.keep import WINDOW, Keep, KeptRun
+from ..execution.keep import Keep
+from ..execution.kept_run import WINDOW, KeptRun
 from ..execution.phase import digest
 from ..execution.tasks import code_digest
 from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_corrected
@@ -185,7 +186,7 @@ def _map_of(survey, ground, image_path, settings, stages, corrections):
     survey.executor.forget()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, curbs, survey.frame, settings.edges,
                             survey=survey, ground=ground, depends=settings.edges)
-    surface_between = partial(extract_road_surface, settings=settings.surface, ground=ground, counted=True)
+    surface_between = partial(extract_road_surface, settings=settings.surface, ground=ground)
     made = stages.run("surface", "Extracting the road surface …", surface_between, survey, boundaries.edges, depends=settings.surface)
     asphalt = None
     if survey.has_intensity and settings.correct:

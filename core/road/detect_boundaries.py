@@ -110,12 +110,12 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
         return points
 
 
-def _steps_of_methods(source: SurveyScanlines | PointDecimation, section: Section, scanlines: ScanlineBoundarySettings,
+def _steps_of_methods(source: Any, section: Section, scanlines: ScanlineBoundarySettings,
                      profiles: CurbSettings) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
     """The phase of both methods: what `steps_of_section` or `corners_of_section` finds, by the method of the section."""
-    if isinstance(source, PointDecimation):
-        return steps_of_section(source, section, profiles)
-    return corners_of_section(source, section, scanlines) if section[0] == "scanlines" else steps_of_section(source.decimation, section, profiles)
+    if section[0] == "scanlines":
+        return corners_of_section(source, section, scanlines)
+    return steps_of_section(getattr(source, "decimation", source), section, profiles)
 
 
 def draw_boundaries(points_by_method: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),

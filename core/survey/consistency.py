@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from ..lazy import shapely
+from .frame.placement import located
 from .frame.road_frame import RoadFrame
 from .store.road_points import RoadPoints
 from .weights import FRAME, MIRROR, VEHICLE
@@ -36,7 +37,7 @@ def check_features_on_roads(features: Features, frame: RoadFrame, label: str) ->
         if row.get("station_m") is None:
             continue
         x, y, z = shapely.get_coordinates(geometry, include_z=True).T
-        s, d = _located(frame, row["road"], x, y)
+        s, d = located(frame, np.full(len(x), -1 if row["road"] is None else row["road"]), *frame.to_local(x, y))
         inside = np.isfinite(s)
         above = [np.median(_above(frame, row["road"], s[inside], z[inside]))] if inside.any() else []
         agrees = bool(above) and abs(_outside(s[inside], row["station_m"])) <= FRAME.station_tolerance
@@ -86,7 +87,7 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
     """
     seen = []
     for road, x, y, s, d, z in sample_road_points(road_points):
-        station, offset = _located(frame, road, x, y)
+        station, offset = located(frame, np.full(len(x), road), *frame.to_local(x, y))
         agree = np.abs(station - s) <= FRAME.station_tolerance
         seen.append((agree, (d - offset)[agree], _above(frame, road, s[agree], z[agree]) if agree.any() else []))
     _refuse_misplaced(seen, label, "points looked at")
@@ -109,13 +110,6 @@ def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarra
 def _outside(values, carried):
     """m that a number lies above the range of (N,) values, negative below it; 0 within."""
     return float(carried - np.clip(carried, values.min(), values.max()))
-
-
-def _located(frame, road, x, y):
-    """(N,) stations and offsets of map coordinates on a road; NaN beside it, or if there is no such road."""
-    if road is None or not 0 <= road < len(frame.roads):
-        return np.full(len(x), np.nan), np.full(len(x), np.nan)
-    return frame.road(road).locate(*frame.to_local(x, y))
 
 
 def _above(frame, road, s, z):

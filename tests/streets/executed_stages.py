@@ -61,7 +61,7 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         survey = opening.open_survey([path], made.trajectory, execution=ExecutionSettings(work_folder=str(work) if work else ""))
         try:
             edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
-            road_points, surface = extract_road_surface(survey, edges, counted=True)
+            road_points, surface = extract_road_surface(survey, edges)
             density = road_points.density
             selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
             road_points, report = correct_intensity(road_points, survey.frame)

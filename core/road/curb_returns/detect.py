@@ -27,11 +27,11 @@ from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden
 from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
-from .classify import classify_curbs, has_road_before, is_curb_like
+from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
-from .main_curbs import KnownPlaces, SearchLimit, main_curbs_of, main_runs, places_along, usual_height
+from .main_curbs import KnownPlaces, SearchLimit, line_tree, main_curbs_of, main_runs, median_distance, places_along, usual_height
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
 from .tracking import join_chains, link_plan_steps
@@ -62,7 +62,8 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     looks = {road: None if ground is None else RoadLook(ground, road) for road in roads}
     works = [_returns_of_road(curb_points, on_islands, decimation, road, mains[road], seen[road], settings,
                               [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
-    for road, (on_island, main, chain, curbs) in zip(roads, in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))):
+    returns = list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0)))
+    for road, (on_island, main, chain, _), curbs in zip(roads, returns, seen_once([curbs for *_, curbs in returns])):
         on_islands &= on_island
         points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
         lines += points
@@ -81,6 +82,16 @@ def _returns_of_road(curb_points, on_islands, decimation, road, main_and_chain, 
         again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
         return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, usual, elsewhere, look))
     return np.ones(len(of_road), bool), main, chain, curbs
+
+
+def seen_once(curbs_of_roads: Sequence[Sequence[CurbReturn]]) -> list[list[CurbReturn]]:
+    """The lines of each road, without those apart that are lines of another road, too; of two such lines the first is left."""
+    result = []
+    for k, curbs in enumerate(curbs_of_roads):
+        others = line_tree([(curb.steps.x, curb.steps.y) for j, of_other in enumerate(curbs_of_roads) for curb in of_other
+                            if j < k or j > k and not curb.apart])
+        result.append([curb for curb in curbs if not curb.apart or median_distance(others, curb.steps.x, curb.steps.y) > RETURN.outline_margin])
+    return result
 
 
 def _points_of_road(survey, road, curbs, chain, main, beside, crs):

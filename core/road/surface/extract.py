@@ -46,8 +46,7 @@ class SurfaceSettings(Limited):
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),
-                         progress: Progress = Progress(), ground: MeasuredGround | None = None,
-                         counted: bool = False) -> tuple[RoadPoints, SurfaceOutlines]:
+                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> tuple[RoadPoints, SurfaceOutlines]:
     """Select the points of the road surface and draw its outline.
 
     Between road edges, all points at the height of the road belong to the surface. The height is followed from the track of the vehicle outward;
@@ -57,7 +56,6 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     them draws it.
 
     ground : MeasuredGround that an earlier stage kept, or None
-    counted : whether the density of points is asked for
 
     Returns
         road_points : RoadPoints with `half_width` and `covered`; the survey lives as long as they do
@@ -70,18 +68,17 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     for road, carriageway in carriageways(survey, edges, settings, progress.part(0.0, 0.5), ground):
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
-            cubes += [(counted_cubes(survey.section(road, number)), None) for number in survey.store.sections(road) if counted]
+            cubes += [(counted_cubes(survey.section(road, number)), None) for number in survey.store.sections(road)]
         else:
             carriageway_of_road[road] = carriageway
-    per_row = _take_points(survey, carriageway_of_road, road_points, counted, cubes, progress.part(0.5, 1.0))
+    per_row = _take_points(survey, carriageway_of_road, road_points, cubes, progress.part(0.5, 1.0))
     for road, carriageway in carriageway_of_road.items():
         stretches += outlines(survey.frame, road, carriageway, per_row[road])
         thin += thin_margins(road, carriageway)
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
-    if counted:
-        road_points.density = tuple(cube_density(part) for part in zip(*cubes))
+    road_points.density = tuple(cube_density(part) for part in zip(*cubes))
     surface = SurfaceOutlines.of_rows(without_overlaps(survey.frame, stretches), survey.crs, said_of_thin(thin))
     if surface.thin:
         progress.warn(surface.thin)
@@ -155,14 +152,14 @@ def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
     return result
 
 
-def _take_points(survey, carriageways, road_points, counted, cubes, progress):
+def _take_points(survey, carriageways, road_points, cubes, progress):
     """Put the surface points into `road_points`, and what is counted of sections into `cubes`; {road: points in each row of cells}.
 
     `carriageways` : {road: Carriageway}
     """
     per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
     executor, length = survey.executor, survey.store.section_length
-    phase = Phase(surface_points, road_points, (counted,), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
+    phase = Phase(surface_points, road_points, (), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
                   state=lambda item: None)   # what is asked of a survey stays as it is
     items = [(stretch, surface_about(carriageways[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(carriageways))]
     seen: dict[int, list[Any]] = {}
@@ -173,7 +170,7 @@ def _take_points(survey, carriageways, road_points, counted, cubes, progress):
         road_points.of_scanners = of_scanners + (0 if road_points.of_scanners is None else road_points.of_scanners)
         first = first_row - carriageways[road].cells.first_row
         per_row[road][first:first + len(rows)] += rows
-    road_points.seen = seen if counted else None
+    road_points.seen = seen
     return per_row
 
 

@@ -144,9 +144,9 @@ def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callab
     z = points.records["z"].take(index)
     order = order_by(z, cell)
     index, cell, z = index[order], cell[order], z[order] * COORDINATE_SCALE
-    ground, first, size = lowest_layers(cell, z, SURFACE.ground_layer_jump, SURFACE.min_layer_share, SURFACE.min_layer_points)
+    lowest, first, size = lowest_layers(cell, z, SURFACE.ground_layer_jump, SURFACE.min_layer_share, SURFACE.min_layer_points)
     # a wall is one layer up to its top
-    low = np.flatnonzero(ground)[z[ground] - np.repeat(z[first], size) < SURFACE.ground_layer_depth]
+    low = np.flatnonzero(lowest)[z[lowest] - np.repeat(z[first], size) < SURFACE.ground_layer_depth]
     index, owner, z = index[low], cell[low].astype(np.intp), z[low]
     count = np.bincount(owner, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)

@@ -58,12 +58,11 @@ def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: fl
     return replace(carriageway, cells=cells_of_stretch, grown={}, **rows)
 
 
-def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway],
-                   counted: bool) -> tuple[StoreIndex, int, np.ndarray, np.ndarray, list[tuple[CountedCubes, CountedCubes]], list[Seen]]:
+def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway]
+                   ) -> tuple[StoreIndex, int, np.ndarray, np.ndarray, list[tuple[CountedCubes, CountedCubes]], list[Seen]]:
     """The phase that selects the points of the road surface, section by section, and puts them into a part of the store of road points.
 
     item : Stretch of a road, and what `surface_about` says of it
-    counted : whether points are counted in cubes, and is looked where the surface was scanned
 
     Returns where the points lie, the number of the first of R rows of cells, (R,) int64 points in each of them, (256,) of each scanner,
     and of each section the CountedCubes of all its points and of those on the road, and `seen_in_section` of the latter.
@@ -76,9 +75,8 @@ def surface_points(road_points: RoadPoints, item: tuple[Stretch, Carriageway],
             part.put(key[0], key[1], records)
             per_row += of_section
             of_scanners.append(points_of_scanners(records))
-            if counted:
-                cubes.append((counted_cubes(road_points.survey.section(*key)), counted_cubes(Points(records))))
-                seen.append(seen_in_section(records))
+            cubes.append((counted_cubes(road_points.survey.section(*key)), counted_cubes(Points(records))))
+            seen.append(seen_in_section(records))
     return part.index(), carriageway.cells.first_row, per_row, sum(of_scanners, np.zeros(256, np.int64)), cubes, seen
 
 

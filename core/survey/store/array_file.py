@@ -160,7 +160,7 @@ class SharedArrays:
     """
 
     def __init__(self, folder: Path | str | None) -> None:
-        self.folder = folder and Path(folder)
+        self.folder: Any = folder and Path(folder)
         self._file = None if folder else ArrayFile()
 
     def __getstate__(self) -> dict[str, Any]:

@@ -424,7 +424,7 @@ def _positions(path):
         elif name == "coord":
             rows[name].append([*text.split(), "", "", ""][:4])
         elif name == "coordinates":   # those of a line are one text
-            rows[name if len(text.split()) > 1 else "point"] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
+            rows[("point", name)[len(text.split()) > 1]] += [[*place.split(","), "", "", ""][:3] + [""] for place in text.split()]
         if name not in ("ele", "time"):
             element.clear()
     return rows, whens

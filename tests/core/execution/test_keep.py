@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress, RememberedMessages
 from lanewright.core.execution import keep
-from lanewright.core.execution.keep import Keep, KeptRun, work_folder
+from lanewright.core.execution.keep import Keep, work_folder
+from lanewright.core.execution.kept_run import KeptRun
 from lanewright.core.execution.phase import NoSource, Phase, Threads, read_plain
 from lanewright.core.markings.outliers import OutlierSettings, kept_of_windows
 from lanewright.core.survey.las.samples import TimeSlots

@@ -9,7 +9,7 @@ from executed_stages import functions_of
 from lanewright.core.common.errors import Cancelled
 from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.execution.choice import ExecutionSettings
-from lanewright.core.execution.keep import KeptRun
+from lanewright.core.execution.kept_run import KeptRun
 from lanewright.core.execution.phase import Threads
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.pipeline import road_map as chain

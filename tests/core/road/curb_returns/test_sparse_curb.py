@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.curb_returns.classify import classify_curbs
+from lanewright.core.road.curb_returns.classify import CurbReturn, classify_curbs
+from lanewright.core.road.curb_returns.detect import seen_once
 from lanewright.core.road.curb_returns.main_curbs import SearchLimit
 from lanewright.core.road.curb_returns.steps import PlanSteps
 from lanewright.core.road.curb_returns.tracking import PlanStepChain
@@ -63,3 +64,11 @@ def test_a_short_island_is_as_high_as_the_curbs_and_a_long_one_may_have_any_heig
 
 def test_a_second_line_of_a_known_curb_is_no_corner():
     assert kinds(usual=0.15, elsewhere=[(np.arange(30.0, 70.0), np.full(40, 13.1))], **MOUTH) == []
+
+
+@pytest.mark.parametrize("apart, left", [((True, True), [1, 0]), ((True, False), [0, 1]), ((False, True), [1, 0]), ((False, False), [1, 1])])
+def test_a_piece_of_corner_that_two_roads_see_is_drawn_once(apart, left):
+    x, ones = np.arange(0.0, 4.0, 0.4), np.ones(10)
+    steps = PlanSteps(x, 0 * x, 0 * x, ones, 0 * x, 0.15 * ones, 0 * x, 0.002 * ones, 12 * ones, 6 * ones)
+    roads = [[CurbReturn(steps, x, 0 * x, "left", "corner", apart=of_one)] for of_one in apart]
+    assert [len(curbs) for curbs in seen_once(roads)] == left
