@@ -71,9 +71,11 @@ def _parts(cells):
         before, count = count, _number_strips(parts, count, cells, strip, COMPOUNDS.max_scan_gap, size, min_length)
         for _, inside in members_of(np.where(parts >= before, parts, -1)):
             even, _ = even_strip(cells[inside])
-            if not even.all():   # without what touched it the strip may be several, such as the lines before and behind an island
-                parts[inside] = -1
-                count = _number_strips(parts, count, cells, inside[even], COMPOUNDS.max_scan_gap, size, min_length)
+            parts[inside[~even]] = -1
+            # without what touched it the strip may be several, such as the lines before and behind an island
+            several = parts.copy()
+            if (end := _number_strips(several, count, cells, inside[even], min_length, COMPOUNDS.max_scan_gap, min_length)) > count + 1:
+                parts, count = several, end
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], COMPOUNDS.max_paint_gap, COMPOUNDS.min_run_across)]

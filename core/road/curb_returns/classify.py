@@ -108,8 +108,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
-    known = line_tree([*((x, y) for _, (x, y, _) in runs), *((curb.steps.x, curb.steps.y) for curb in result), *elsewhere])
-    return result + _of_the_road(separate, known, usual)
+    return result + _of_the_road(separate, result, runs, elsewhere, usual)
 
 
 def _sides_continued(runs, chains, steps):
@@ -137,11 +136,12 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
     return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "", apart=True)
 
 
-def _of_the_road(apart, known, usual):
+def _of_the_road(apart, continued, runs, elsewhere, usual):
     """Of lines apart those that are curbs of this road: its curbs are of one height; an island that goes on for long may have another.
 
-    known : tree of the curbs that are known; usual : m, height of the road's own curbs, NaN where there are none
+    continued, runs, elsewhere : the curbs that are known; usual : m, height of the road's own ones, NaN where there are none
     """
+    known = line_tree([*((x, y) for _, (x, y, _) in runs), *((curb.steps.x, curb.steps.y) for curb in continued), *elsewhere])
     off = {id(curb): abs(np.log(np.median(curb.steps.height) / usual)) for curb in apart}
     islands = [curb for curb in apart if curb.kind == "island"]
     corners = [curb for curb in apart if curb.kind == "corner" and off[id(curb)] <= RETURN.max_height_step
