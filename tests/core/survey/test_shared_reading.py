@@ -3,6 +3,7 @@
 import threading
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,6 +83,21 @@ def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_th
     executor = WorkerProcesses(python, 3)
     assert opened(street, executor) == by_threads
     assert not executor.folder.exists()
+
+
+def test_files_that_workers_hold_open_and_that_windows_does_not_remove_go_with_the_folder(street, by_threads, python, monkeypatch):
+    unlink, refused = Path.unlink, []
+
+    def unless_points(path, missing_ok=False):
+        if path.name.startswith("points-") and path.suffix == ".bin":
+            refused.append(path)
+            raise PermissionError(13, "another process uses it", str(path))
+        unlink(path, missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", unless_points)
+    executor = WorkerProcesses(python, 1)
+    assert opened(street, executor) == by_threads
+    assert refused and not executor.folder.exists()
 
 
 @pytest.mark.parametrize("block, points", [(10**6, 1), (40, 500)])
