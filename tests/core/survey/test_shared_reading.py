@@ -253,3 +253,13 @@ def test_halves_of_a_part_are_the_part(street, by_threads, tmp_path):
     executor = Halving(tmp_path)
     assert opened(street, executor) == by_threads
     assert executor.halved > 2
+
+
+def test_a_file_that_was_written_again_with_other_intensities_is_read_again(street, tmp_path):
+    trajectory, clouds = street
+    x, y, z, measured = surveyed_points(drive(chain(ahead(80), bend(60, 60), ahead(60)), start=1000.0), lines=4)
+    again = write_cloud(tmp_path / "again.las", x, y, z, measured, crs="EPSG:32632", intensity=np.arange(len(x)) % 997)
+    one, work = (trajectory, [again]), str(tmp_path / "work")
+    before = opened(one, work_folder=work)
+    write_cloud(tmp_path / "again.las", x, y, z, measured, crs="EPSG:32632", intensity=np.arange(len(x))[::-1] % 997)
+    assert before != opened(one, work_folder=work) == opened(one)
