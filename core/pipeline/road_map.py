@@ -153,6 +153,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         if stages.kept is not None:
             if survey is not None:
                 survey.executor.release()
+            stages.kept.phases = None   # what it asked for does not tell how much a whole run asks for
             stages.kept.give_back()
         elif survey is not None:
             survey.store.close()
