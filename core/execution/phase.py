@@ -201,6 +201,8 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
         os.replace(unfinished, path)
     except BaseException as error:
         unfinished.unlink(missing_ok=True)
+        if isinstance(error, PermissionError) and path.exists():
+            return   # on Windows, while another run reads what it, too, has written there
         if isinstance(error, OSError) and error.filename is None:   # of a full disk
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise

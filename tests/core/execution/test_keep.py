@@ -154,6 +154,22 @@ def test_points_that_are_gone_or_damaged_are_made_again(tmp_path, damage):
     assert again[0] != first[0] and again[1] == first[1] and (work / again[0]).exists()
 
 
+def test_two_runs_share_a_folder_where_windows_replaces_no_file_that_the_other_reads(tmp_path, monkeypatch):
+    class Other(Asked):
+        """Another run, which makes the same at once."""
+
+        def run(self, phase, items, progress=Progress(), keep=()):
+            in_folder(Asked(), tmp_path / "work")
+            monkeypatch.setattr(os, "replace", refused)
+            return super().run(phase, items, progress, keep)
+
+    def refused(source, target):
+        raise PermissionError(13, "another process uses it", str(source), 5, str(target))
+
+    assert in_folder(Other(), tmp_path / "work") == [2, 4, 6]
+    assert len(kept_in(tmp_path / "work")) == 3 and not list(tmp_path.rglob("*.part*"))
+
+
 def test_a_survey_is_made_once_and_says_again_what_it_said(tmp_path):
     def made(progress):
         progress.warn("The road is narrow.")
