@@ -23,7 +23,8 @@ class _Phrase(str):
 class _Values(Formatter):
     def format_field(self, value, spec):
         text = super().format_field(value, spec)
-        return numbers(text) if not isinstance(value, str) or text[:1].isdigit() and " " not in text else text
+        is_number = hasattr(value, "__float__") or isinstance(value, str) and text[:1].isdigit() and " " not in text
+        return numbers(text) if is_number else text   # not the names of files
 
 
 def languages():

@@ -42,7 +42,7 @@ def language() -> str:
     return _language
 
 
-_NUMBER = re.compile(r"(?<![^\s(+±–-])(?:\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+\.\d+)(?=[)%°;:,.]*(?:[\s–/]|$))")
+_NUMBER = re.compile(r"(?<![^\s(+±–-])(?<!\w-)(?:\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+\.\d+)(?=[)%°;:,.]*(?:[\s–]|/\d|$))")
 
 
 def numbers(text: str) -> str:

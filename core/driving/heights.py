@@ -1,4 +1,8 @@
-"""Heights of driving lines: the road's own."""
+"""Heights of driving lines: the road's own.
+
+A height is the median of the road points near the line. Where the road was not scanned, the marking lines beside it give the height, moved up
+or down to what the road says nearby. Then stray heights are taken out, and the others are smoothed along the lane.
+"""
 
 from __future__ import annotations
 

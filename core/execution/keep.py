@@ -170,8 +170,9 @@ class Keep(Executor):
         for used, size, path in sorted(files):
             if excess <= 0 or time.time() - used < EXECUTION.unused_time:
                 return
-            path.unlink(missing_ok=True)
-            excess -= 2 * size
+            with suppress(OSError):   # of another user, or, on Windows, open in another program
+                path.unlink(missing_ok=True)
+                excess -= 2 * size
 
     @property
     def full(self) -> bool:

@@ -53,8 +53,8 @@ from ..road.surface.ground_grid import MeasuredGround
 from ..road.surface.road_surface import SurfaceOutlines
 from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
-from ..survey.las.reader import CloudHeader, read_headers
-from ..survey.open_survey import SurveySettings, open_survey, states_of
+from ..survey.las.reader import CloudHeader, read_headers, states_of
+from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
 from ..survey.store.road_points import columns_of_roads
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
@@ -153,6 +153,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
         if stages.kept is not None:
             if survey is not None:
                 survey.executor.release()
+            stages.kept.phases = None   # what it asked for does not tell how much a whole run asks for
             stages.kept.give_back()
         elif survey is not None:
             survey.store.close()

@@ -19,7 +19,7 @@ from .frame.projection import RoadProjection
 from .frame.road_frame import RoadFrame
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import EVER, MAX_INTENSITY, SCANNER_FIELDS, IntensitySource, LasAxis, ScannerCensus, flagged, packed_returns, valid_points
-from .las.reader import CloudHeader
+from .las.reader import CloudHeader, states_of
 from .las.samples import TimeSlots
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, beside_road, fill_units, point_dtype, to_units
@@ -625,9 +625,11 @@ class _PartsOfFiles:
 
     store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
     ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
+    states : of the files, by which a later run knows what was read of them; a file that was written again may have the same header
     """
 
-    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: np.ndarray, block: int):
+    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: np.ndarray, block: int,
+                 states: Any = None):
         self.files, self.store, self.reader = files, store, reader
         self.ground = _HeightFilter(reader.frame, drop, reader.choice.above_road)
         self.drop, self.ranges, self.block = drop, ranges, block
@@ -638,7 +640,8 @@ class _PartsOfFiles:
         reader = Recipe("core.survey.blocks:_BlockReader", dict(frame=self.reader.frame, choice=self.reader.choice, slots=self.reader.slots))
         files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
         return Recipe("core.survey.blocks:_PartsOfFiles", dict(
-            files=files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block))
+            files=files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block,
+            states=states_of(self.files)))
 
     def items(self, points: int) -> list[tuple[int, int]]:
         """(first, last + 1) numbers of blocks that have about so many points together."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,7 +22,7 @@ from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance, runs
 from .frame.row_table import SigmaAlong
 from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
-from .las.reader import CloudHeader, read_headers
+from .las.reader import CloudHeader, read_headers, states_of
 from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
@@ -79,11 +78,6 @@ def _survey_of_run(executor, read, progress):
     survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
     return survey
-
-
-def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
-    """Path, size and time of change of each file."""
-    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
 
 
 # Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -101,7 +102,8 @@ class Survey:
         self.store.take_over(StoreIndex.join(list(executor.run(phase, items, progress))), folder)
         close_files()
         for file in before if executor.work is None else ():
-            file.unlink()
+            with suppress(OSError):   # Windows removes none that a worker still holds open; it goes with the folder
+                file.unlink()
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""

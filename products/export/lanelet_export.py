@@ -215,6 +215,7 @@ class _Drafting:
         return tuple(range(first, first + len(places)))
 
     def _objects(self) -> None:
+        """Stop lines and crossings from the markings, signs from the signals, and rules of who waits at them."""
         for line in stop_lines(self.source.markings):
             self._new_way(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"})
         for sides in walked_crossings(self.source.markings):

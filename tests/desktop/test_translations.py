@@ -39,6 +39,10 @@ def test_every_text_of_the_code_is_in_the_translation_and_finished():
 def test_numbers_have_a_comma_in_german_and_names_and_versions_stay(german):
     assert tr("{what} {number:.1f} cm").format(what="tile 1.5", number=1.44) == "tile 1.5 1,4 cm"
     assert numbers("±3.5 m (1,042,726.5) of 0.2.0") == "±3,5 m (1.042.726,5) of 0.2.0"
+    folder = Path("/data/part 2.5 again/lidar-1.2/drive.kml")
+    assert str(folder) in tr("{label} was to be written to {path}, which is a folder. Name a file in it.", label="Report", path=folder)
+    assert told("/data/lidar-1.2/drive.kml holds no track. A drive is a track (layer track_points): save it with its track, or choose the layer of "
+                "positions.").startswith("/data/lidar-1.2/drive.kml ")
     assert "1,5 m" in told("Minimum curb height is 1.5 m; it must be between 0.01 m and 0.5 m.")
 
 

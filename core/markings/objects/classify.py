@@ -64,7 +64,7 @@ def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> n
 
 def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
                       covered: float | Sequence[float] = 0.0, blocks: bool | np.ndarray = False) -> list[str]:
-    """Class of every cluster of one road, "" for what is not paint.
+    """Class of every cluster of one road, "" for what is not paint. `stripes_of_crossing` took zebra crossings before.
 
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
     covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road

@@ -41,7 +41,7 @@ def profiles_of(decimation: PointDecimation, settings: CurbSettings) -> Search:
 
 
 def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
-    """The phase of profiles: steps in one section of a road.
+    """The phase of profiles: steps in one section of a road, where the scanner is noisy or the cloud thin on several profiles together.
 
     Returns
         steps : side -> CurbSteps, passes merged

@@ -47,6 +47,11 @@ class CloudHeader:
     brightness: int = 1   # by which intensities are multiplied, so that they have the scale of other files, see `in_one_scale`
 
 
+def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
+    """Path, size and time of change of each file."""
+    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
+
+
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
                units: FileUnits = METRES) -> Any:
     """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.

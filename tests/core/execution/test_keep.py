@@ -186,3 +186,21 @@ def test_of_a_folder_that_fills_its_disk_what_was_not_used_for_a_day_goes_and_no
     monkeypatch.setattr(keep.shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
     Keep(Asked(), work).made("a.laz", None, RememberedMessages())
     assert not old.exists() and len(kept_in(work)) == 3 and (work / "notes.txt").exists()
+
+
+def test_what_another_user_keeps_in_a_full_folder_stays_and_ends_no_run(tmp_path, monkeypatch):
+    work = work_folder(str(tmp_path / "work"))
+    in_folder(Asked(), work)
+    theirs, mine, *_ = sorted(kept_in(work))
+    for path, hours in ((theirs, 40), (mine, 30)):
+        os.utime(path, (time.time() - 3600 * hours,) * 2)
+
+    def unlink(path, missing_ok=False):
+        if path == theirs:
+            raise PermissionError(13, "Permission denied", str(path))
+        os.unlink(path)
+
+    monkeypatch.setattr(keep.shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
+    monkeypatch.setattr(Path, "unlink", unlink)
+    Keep(Asked(), work).made("a.laz", lambda progress: 1, RememberedMessages())
+    assert theirs.exists() and not mine.exists()

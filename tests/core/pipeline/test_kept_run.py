@@ -125,6 +125,19 @@ def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, 
     assert made(street, tmp_path, kept)[0] == alone[0]
 
 
+def test_after_a_run_that_was_cancelled_early_the_next_whole_one_is_kept(street, tmp_path, monkeypatch, kept):
+    def cancelled(*_, **__):
+        raise Cancelled
+
+    with monkeypatch.context() as patch:
+        patch.setattr(chain, "_corrected", cancelled)
+        with pytest.raises(Cancelled):
+            made(street, tmp_path, kept)
+    found, _ = made(street, tmp_path, kept)
+    without(monkeypatch, READING)
+    assert made(street, tmp_path, kept)[0] == found
+
+
 def test_of_one_run_alone_points_stay_on_the_disk(street, tmp_path, kept):
     def on_the_disk():
         gc.collect()

@@ -3,6 +3,7 @@
 import threading
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,6 +83,21 @@ def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_th
     executor = WorkerProcesses(python, 3)
     assert opened(street, executor) == by_threads
     assert not executor.folder.exists()
+
+
+def test_files_that_workers_hold_open_and_that_windows_does_not_remove_go_with_the_folder(street, by_threads, python, monkeypatch):
+    unlink, refused = Path.unlink, []
+
+    def unless_points(path, missing_ok=False):
+        if path.name.startswith("points-") and path.suffix == ".bin":
+            refused.append(path)
+            raise PermissionError(13, "another process uses it", str(path))
+        unlink(path, missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", unless_points)
+    executor = WorkerProcesses(python, 1)
+    assert opened(street, executor) == by_threads
+    assert refused and not executor.folder.exists()
 
 
 @pytest.mark.parametrize("block, points", [(10**6, 1), (40, 500)])
@@ -253,3 +269,13 @@ def test_halves_of_a_part_are_the_part(street, by_threads, tmp_path):
     executor = Halving(tmp_path)
     assert opened(street, executor) == by_threads
     assert executor.halved > 2
+
+
+def test_a_file_that_was_written_again_with_other_intensities_is_read_again(street, tmp_path):
+    trajectory, clouds = street
+    x, y, z, measured = surveyed_points(drive(chain(ahead(80), bend(60, 60), ahead(60)), start=1000.0), lines=4)
+    again = write_cloud(tmp_path / "again.las", x, y, z, measured, crs="EPSG:32632", intensity=np.arange(len(x)) % 997)
+    one, work = (trajectory, [again]), str(tmp_path / "work")
+    before = opened(one, work_folder=work)
+    write_cloud(tmp_path / "again.las", x, y, z, measured, crs="EPSG:32632", intensity=np.arange(len(x))[::-1] % 997)
+    assert before != opened(one, work_folder=work) == opened(one)
