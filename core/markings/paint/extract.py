@@ -217,6 +217,8 @@ def _differences(points, value, order, starts, count):
 
     value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
     """
+    if not len(count):
+        return np.empty(0)
     square = np.repeat(np.arange(len(count)), count)
     place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
     keys = np.stack([square, *(points.records[key][order[place]] // CELL_UNITS for key in "sd")])

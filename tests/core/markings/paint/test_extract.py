@@ -384,6 +384,13 @@ def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_t
     assert BAR(paint.s, paint.d).mean() > 0.75
 
 
+def test_a_street_with_too_few_points_to_tell_their_scatter_is_searched_all_the_same(tmp_path):
+    frame = drive(90)
+    thin = noisy_bar(frame, 0, 0, 79.9, 0, noisy=False)[::60]
+    paint, said = found_and_said([(0, thin)], frame, tmp_path)
+    assert len(paint) <= len(thin) and not said
+
+
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
     line = strip(10, 50, 1.0, 1.15)
