@@ -85,8 +85,8 @@ class _TrackWeights:
     gap_neighbourhood: float = 10.0   # m around a gap within which other lanes tell of a split or merge
     near_doubt: float = 20.0   # m between two stretches in doubt that are one: what neighbouring metres show is not independent
     bridged_trust: float = 0.7   # share of the probability at both ends of a gap that is left between them
-    # shares of what is right at both ends of a gap that is right between them, and of what is right at its end that is so beyond all paint: 97 and 83
-    # of a hundred metres of 28 simulated streets of three simulators, rounded down
+    # shares of what is right at both ends of a gap that is right between them, and of what is right at its end that is so beyond all paint: set by
+    # what lanes of simulated streets show, not fitted on streets kept aside
     trust_bridged: float = 0.95
     trust_beyond_paint: float = 0.8
     least_probability_of_end: tuple[float, float] = 0.25, 0.8   # of a lane at its end, between two borders and beside one: else it is mostly wrong

@@ -51,10 +51,10 @@ class Boundaries:
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
                       open_ends: np.ndarray | None = None, hatching: RowTable | None = None,
-                      pavement: CrossSections | None = None, usual: float = NEUTRAL.usual_lane) -> Boundaries:
+                      pavement: CrossSections | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. `usual` : m, the usual width of a lane
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
     """
     count = len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
@@ -74,7 +74,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         ends.append((RowTable.of_rows([(0, row) for row in open_ends], count), OPEN, OPEN))
     if hatching is not None:
         ends.append((hatching, HATCHING, HATCHING))
-    ends.append((_bare_borders(lines.d, usual), BARE, BARE))
+    ends.append((_bare_borders(lines.d), BARE, BARE))
     for d, end_kind, at_places in ends:
         patterns = np.empty(d.spans.size, np.int8)
         patterns[:] = at_places
@@ -88,7 +88,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
                       found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
 
 
-def _bare_borders(d, usual):
+def _bare_borders(d):
     """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside the same line."""
     row, station = d.spans.owner, d.spans.station
     order = np.lexsort((-d.values, station))
@@ -97,7 +97,7 @@ def _bare_borders(d, usual):
     room = -np.diff(d.values[pairs], axis=0)[0]
     lane = (room >= NEUTRAL.narrowest_lane) & (room <= NEUTRAL.widest_lane)
     count, total = (np.bincount(row[pairs[:, lane]].ravel(), np.tile(values, 2), len(d)) for values in (np.ones(lane.sum()), room[lane]))
-    width = np.where(count > 0, total / np.maximum(count, 1), usual)[row]
+    width = np.where(count > 0, total / np.maximum(count, 1), np.nan)[row]
     borders = []
     for beside, sign in zip(pairs, (-1, 1)):
         usual_there = width[beside]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree.ElementTree import ParseError, iterparse
+from xml.etree.ElementTree import ParseError, iterparse  # nosec B405
 
 import numpy as np
 
@@ -415,7 +415,7 @@ def _positions(path):
     with open(path, "rb") as file:
         if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
             raise ValueError("it declares entities of its own")
-    for _, element in iterparse(path):
+    for _, element in iterparse(path):  # nosec B314
         name, text = element.tag.rpartition("}")[2], "".join(element.itertext()).strip()
         if name in ("trkpt", "rtept", "wpt"):
             rows[name].append([element.get("lon", ""), element.get("lat", ""), element.findtext("{*}ele", ""), element.findtext("{*}time", "")])

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from curbed_streets import LENGTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.progress import Progress
 from lanewright.core.road.common.corners import CurbSteps
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.common.decimation import PointDecimation
-from lanewright.core.road.common.side_curbs import SideSteps, points_of_side
+from lanewright.core.road.common.side_curbs import SideSteps, grids_beside, points_of_side, steps_of_roads
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.detect_boundaries import (
     BoundarySettings,
@@ -19,7 +20,7 @@ from lanewright.core.road.detect_boundaries import (
     measure_agreement,
 )
 from lanewright.core.road.edges.fit import fit_road_edges
-from lanewright.core.road.profiles.detect import main_curbs
+from lanewright.core.road.profiles.detect import profiles_of, steps_of_section
 
 FOOT = -0.02   # m, height of the curb's foot above the expected road
 
@@ -89,7 +90,8 @@ def parked():
     """A survey of a street with a parked car between stations 20 and 25, and what was seen on its left."""
     survey, settings = survey_of(parked_car(street(length=60.0), start=20.0), driven(60.0)), CurbSettings()
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        return survey, main_curbs(decimation, settings)[1][0]["left"]
+        steps = steps_of_roads(steps_of_section, decimation, (settings,), {"profiles": profiles_of(decimation, settings)}, Progress())
+        return survey, grids_beside(steps["profiles"])[0]["left"]
 
 
 def drawn(parked, *methods):

@@ -54,7 +54,7 @@ def test_what_was_found_is_kept_until_points_are_added():
 
 def test_what_was_seen_when_the_surface_was_extracted_is_what_its_points_show():
     survey = streets.survey_of(streets.street())
-    points, _ = extract_road_surface(survey, None, counted=True)
+    points, _ = extract_road_surface(survey, None)
     assert points.seen and replace(points, seen=None).seen_surface().keys() == points.seen.keys()
     for road, sections in replace(points, seen=None).seen_surface().items():
         for here, there in zip(sections, points.seen[road]):
