@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import ParseError, iterparse  # nosec B405
@@ -285,6 +286,7 @@ def _degrees(column):
 
 KINDS_OF_POSITIONS = ("trkpt", "coord", "rtept", "coordinates", "wpt", "point")   # in GPX and KML, the likeliest drive first
 TRACK_ENDINGS = (".gpx", ".kml")
+PREFIX = re.compile(rb"(</?)[\w.-]+:")   # of an element of XML: some programs write gx: without declaring it
 
 
 class _Sentence(NamedTuple):
@@ -412,10 +414,10 @@ def _positions(path):
     """{element: rows of [longitude, latitude, height, time], as texts} of a file, and the times of a track that has them by themselves."""
     rows: dict[str, list[list[str]]] = {kind: [] for kind in KINDS_OF_POSITIONS}
     whens = []
-    with open(path, "rb") as file:
-        if b"<!ENTITY" in file.read(TRAJECTORY.head_bytes):   # a few bytes of which may stand for gigabytes
-            raise ValueError("it declares entities of its own")
-    for _, element in iterparse(path):  # nosec B314
+    content = path.read_bytes()
+    if b"<!ENTITY" in content:   # a few bytes of which may stand for gigabytes
+        raise ValueError("it declares entities of its own")
+    for _, element in iterparse(BytesIO(PREFIX.sub(rb"\1", content))):  # nosec B314
         name, text = element.tag.rpartition("}")[2], "".join(element.itertext()).strip()
         if name in ("trkpt", "rtept", "wpt"):
             rows[name].append([element.get("lon", ""), element.get("lat", ""), element.findtext("{*}ele", ""), element.findtext("{*}time", "")])
