@@ -360,7 +360,7 @@ class _Pages:
         arrow.setPicturePath(NORTH_ARROW)
         arrow.setSvgFillColor(QColor(40, 40, 40))
         arrow.setSvgStrokeColor(QColor(40, 40, 40))
-        self._place(arrow, page, x + 21 - ARROW / 2, top + 4 if aside else top + 2, ARROW, ARROW)
+        self._place(arrow, page, x + 21 - ARROW / 2, top + 1 if aside else top + 2, ARROW, ARROW)
         arrow.setLinkedMap(chart)
         arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
         bar = QgsLayoutItemScaleBar(self.layout)
@@ -380,7 +380,7 @@ class _Pages:
 
     def _explain(self, paper, sheet):
         """What the red line and the figures on the map say, between arrow and scale."""
-        x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 8
+        x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 3.5
         paper.line([(x, y), (x + 8, y)], AXIS, 0.25, "5 1 0.6 1")
         courses = [(line, shapely.LineString(line.places[:, :2])) for line in self.lines]
         shown = [(line, course.length) for line, course in courses if sheet.outline().intersects(course)]
@@ -391,8 +391,8 @@ class _Pages:
                 ("12 cm", tr("Height of the curb"), 400, "ROAD_EDGES", "height", 0.01, 6.0))   # where and down to which scale the styles write it
             if self.scale <= least and any(line.output == output and line.number(name) > lowest and length > shortest for line, length in shown)]
         for row, (figure, text) in enumerate(rows):
-            paper.text(x, y + 3.2 * row, figure, 5.5, "start")
-            paper.text(x + 10, y + 3.2 * row, text, 5.5, "start")
+            paper.text(x, y + 2.6 * row, figure, 5.5, "start")
+            paper.text(x + 10, y + 2.6 * row, text, 5.5, "start")
 
     def _add_title_block(self, paper, page, frame, contents, number, scale, band=None):
         """Who made what, when, where and how well; captions are drawn, what was chosen stands in labels that can be changed."""
