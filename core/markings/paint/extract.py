@@ -77,6 +77,9 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
+    if photographed := THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE * sum(len(scatter.photographed_windows(road)) for road in road_points.roads()):
+        progress.warn(f"Along {photographed:.0f} m neighbouring points are as alike as in photographs. Paint is compared with the ground around each "
+                      "spot there, and edges of shadows may be taken for it: look at these markings, or give the scanner's own intensity.")
     ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
     phase = Phase(paint_of_window, source, (settings, ways, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
@@ -134,12 +137,8 @@ class ScannerScatter:
             return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
         listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
         text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
-        windows, photographed = (sum(len(of(road)) for road in {road for road, _ in self.points})
-                                 for of in (self.noisy_windows, self.photographed_windows))
+        windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
         filled = sum(bool(count.sum()) for count in self.points.values())
-        if photographed:
-            text += (f" Along {photographed * length:.0f} of {filled * length:.0f} m neighbouring points are as alike as in photographs: there paint "
-                     "is compared with the ground around each spot.")
         if not windows:
             return text + " Paint is searched for in the image."
         if windows == filled:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from heard import Heard
 from lanewright.core.common import parallel
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
@@ -28,11 +29,11 @@ gdal = pytest.importorskip("osgeo.gdal")
 FRAME = drive()
 
 
-def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
+def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None, progress=Progress()):
     points = road_points(records, frame, section_length)
     path = folder / "image.tif"
     write_intensity_image(points, path)
-    return extract_markings(points, IntensityImage.open(path), frame, mask_path=mask).all_points()
+    return extract_markings(points, IntensityImage.open(path), frame, progress=progress, mask_path=mask).all_points()
 
 
 def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_not(tmp_path):
@@ -115,7 +116,8 @@ def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_a
 
     s, d = strewn(60.0, 4.0, -4.0, DENSITY)
     records = records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0)
-    found = found_on(records, tmp_path)
+    found = found_on(records, tmp_path, progress=(heard := Heard()))
+    assert "edges of shadows may be taken for it" in " ".join(heard.warned)
     on_line = strip(9.9, 50.1, 0.95, 1.2)(found.s, found.d)
     assert on_line.mean() > 0.98
     assert len(np.unique(found.s[on_line] // 0.5)) >= 78
