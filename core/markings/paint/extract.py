@@ -76,8 +76,9 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
-    progress.info(scatter.summary(THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE))
-    if photographed := THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE * sum(len(scatter.photographed_windows(road)) for road in road_points.roads()):
+    length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
+    progress.info(scatter.summary(length))
+    if photographed := length * sum(len(scatter.photographed_windows(road)) for road in road_points.roads()):
         progress.warn(f"Along {photographed:.0f} m neighbouring points are as alike as in photographs. Paint is compared with the ground around each "
                       "spot there, and edges of shadows may be taken for it: look at these markings, or give the scanner's own intensity.")
     ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
