@@ -210,7 +210,7 @@ def _where_driven(part, s, estimate, span, lane_width, ends_bare):
     count = inside.sum(axis=0)
     beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
     room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    anywhere, alone = SAME_LANE**2 + 0.0 * room if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
+    anywhere, alone = np.full_like(room, SAME_LANE**2) if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
     full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
     of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
     variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)

@@ -1,6 +1,7 @@
 """A run in the window goes on from where it differs from the last one, and gives what it would have given alone."""
 
 import gc
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -113,26 +114,27 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
         assert stretches > 10 and 1 <= sum(asked[name]) <= stretches / 2, name
 
 
-def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, monkeypatch, kept):
+@contextmanager
+def cancelled_at(monkeypatch, stage):
+    """What runs in here is cancelled where a stage begins."""
     def cancelled(*_, **__):
         raise Cancelled
 
-    with monkeypatch.context() as patch:
-        patch.setattr(chain, "cluster_markings", cancelled)
-        with pytest.raises(Cancelled):
-            made(street, tmp_path, kept)
+    with monkeypatch.context() as patch, pytest.raises(Cancelled):
+        patch.setattr(chain, stage, cancelled)
+        yield
+
+
+def test_a_run_that_was_cancelled_goes_on_where_it_was(street, alone, tmp_path, monkeypatch, kept):
+    with cancelled_at(monkeypatch, "cluster_markings"):
+        made(street, tmp_path, kept)
     without(monkeypatch, SURFACE[:-1])
     assert made(street, tmp_path, kept)[0] == alone[0]
 
 
 def test_after_a_run_that_was_cancelled_early_the_next_whole_one_is_kept(street, tmp_path, monkeypatch, kept):
-    def cancelled(*_, **__):
-        raise Cancelled
-
-    with monkeypatch.context() as patch:
-        patch.setattr(chain, "_corrected", cancelled)
-        with pytest.raises(Cancelled):
-            made(street, tmp_path, kept)
+    with cancelled_at(monkeypatch, "_corrected"):
+        made(street, tmp_path, kept)
     found, _ = made(street, tmp_path, kept)
     without(monkeypatch, READING)
     assert made(street, tmp_path, kept)[0] == found

@@ -227,31 +227,15 @@ def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without
     assert len(seen(np.zeros(len(s), bool))) == 0
 
 
-class Listener(Progress):
-    """Keeps the messages and warnings."""
-
-    def __init__(self):
-        self.warnings, self.said = [], []
-
-    def warn(self, text):
-        self.warnings.append(text)
-
-    def info(self, text):
-        self.said.append(text)
-
-    def part(self, first, last):
-        return self
-
-
 @pytest.mark.parametrize("ends, warnings", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
 def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, warnings):
-    records, listener = street(FRAME, [strip(10, 50, 1.0, 1.15)]), Listener()
+    records, listener = street(FRAME, [strip(10, 50, 1.0, 1.15)]), Heard()
     low, high = np.percentile(records["intensity"], ends)
     records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
     points = road_points(records, FRAME)
     write_intensity_image(points, tmp_path / "image.tif")
     extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, progress=listener)
-    assert len(listener.warnings) == warnings
+    assert len(listener.warned) == warnings
 
 
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):
@@ -337,7 +321,7 @@ BAR = strip(30, 34, 1.0, 1.3)
 
 def found_and_said(tiles, frame, folder):
     """Paint of road 0 before station 55, and the sentences about scatter; `tiles` are pairs of road and records."""
-    points, listener = RoadPoints(SectionStore(ROAD_POINT, 20.0), frame.origin), Listener()
+    points, listener = RoadPoints(SectionStore(ROAD_POINT, 20.0), frame.origin), Heard()
     for road, records in tiles:
         points.store.append(road, records)
     write_intensity_image(points, folder / "image.tif")
