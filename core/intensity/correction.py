@@ -177,7 +177,7 @@ class AsphaltLook:
 
 
 def _levels(road_points, frame, beams, scanners, step):
-    """The work that counts levels of intensity: IntensityHistograms, AsphaltTable or None, the highest intensity, and why nothing can be corrected."""
+    """The work that counts intensities: IntensityHistograms, AsphaltTable or None, the highest intensity, and why nothing can be corrected."""
     before = IntensityHistograms(scanners)
     modelled = IntensityHistograms(scanners) if beams else before
 

@@ -288,7 +288,8 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
 
 def _corrected(road_points, frame, settings, asphalt, progress):
     """What `correct_intensity` gives, and the pieces of image that are looked for in the same points, in one phase."""
-    return in_step([intensity_corrected(road_points, frame, asphalt, progress), pieces_of_image(road_points, settings)], road_points.executor, progress)
+    works = [intensity_corrected(road_points, frame, asphalt, progress), pieces_of_image(road_points, settings)]
+    return in_step(works, road_points.executor, progress)
 
 
 # The stages of the road map, run one after the other: their shares of the progress bar and their run times.
