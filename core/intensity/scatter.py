@@ -17,9 +17,9 @@ from ..execution.phase import Phase
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
 from .asphalt_model import LOWER_QUANTILE
-from .weights import ASPHALT
+from .weights import ASPHALT, IMAGE
 
-WINDOW_UNITS = 200_000   # derived: units of 0.1 mm: 20 m of road, whose points are judged together
+WINDOW_UNITS = round(IMAGE.ranking_window / COORDINATE_SCALE)   # derived: units of road whose points are judged together
 WINDOWS_PER_TASK = 12   # derived: windows that a worker process is given together: at everyday density half a second of its time
 MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
 SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
