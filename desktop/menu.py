@@ -35,9 +35,10 @@ from ..processing_provider.results.road_maps import (
     run_table,
     run_tables,
 )
+from ..processing_provider.styling import say_in_users_language
 from ..processing_provider.texts import chosen_language, tr
 from .background import SampleRun
-from .widgets import all_is_there, column, say
+from .widgets import all_is_there, column, open_file, say
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
@@ -88,6 +89,7 @@ class Menu(QObject):
                   theme("/mActionHelpContents.svg"))
         # QGIS asks when it shows the menu of a layer: only then is it known what the layer is
         iface.layerTreeView().contextMenuAboutToShow.connect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.connect(say_in_users_language)   # also those of a colleague, from a file in another language
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
@@ -210,13 +212,10 @@ class Menu(QObject):
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
-        if not path:
-            message = tr("No report has been written since QGIS was started.")
-        elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
-            return
+        if path:
+            open_file(self.iface, path)
         else:
-            message = tr("No web browser could be started. The report is the file {path}.").format(path=path)
-        say(self.iface, message)
+            say(self.iface, tr("No report has been written since QGIS was started."))
 
     def open_table(self):
         """What the runs since QGIS was started gave, in a window."""
@@ -228,6 +227,7 @@ class Menu(QObject):
 
     def remove(self):
         self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.disconnect(say_in_users_language)
         self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
