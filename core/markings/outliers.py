@@ -182,7 +182,7 @@ class Neighbours:
             else:
                 self._tree = cKDTree(coordinates)
 
-    def _found(self, rows):
+    def _search(self, rows):
         """Distances, in units, of some points to the nearest in the tree and rows of these there, (M, k + 1) each.
 
         Each point is the first or, beside another at its place, one of the first of its own neighbours.
@@ -195,7 +195,7 @@ class Neighbours:
 
     def nearest(self, rows: np.ndarray) -> np.ndarray:
         """(M, k) indices of the nearest others of some points."""
-        return self._rows.take(self._found(rows)[1][:, 1:]) if self._k and len(rows) else np.empty((len(rows), self._k), np.intp)
+        return self._rows.take(self._search(rows)[1][:, 1:]) if self._k and len(rows) else np.empty((len(rows), self._k), np.intp)
 
     def distances(self, rows: np.ndarray) -> np.ndarray:
         """m, the mean distance of some points to their nearest others, which is looked for once; of the shape of `rows`.
@@ -208,7 +208,7 @@ class Neighbours:
         for first in range(0, len(unknown), QUERIES_PER_BLOCK):
             check_cancelled()
             asked = unknown[first:first + QUERIES_PER_BLOCK]
-            self._means[asked] = self._found(asked)[0].sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k)
+            self._means[asked] = self._search(asked)[0].sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k)
         return self._means.take(rows)
 
 

@@ -205,8 +205,8 @@ def _linked(cells, along, across):
     for step in range(int(across) + 1):
         near = key + step * (int(column.max()) + 2 * reach + 1)
         first, last = np.searchsorted(key, near - reach), np.searchsorted(key, near + reach, side="right") - 1
-        found = np.flatnonzero(first <= last)
-        pairs += [(order[found], order[other[found]]) for other in (first, last)]
+        some = np.flatnonzero(first <= last)
+        pairs += [(order[some], order[other[some]]) for other in (first, last)]
     return linked_groups(*np.concatenate(pairs, axis=1), len(cells)).astype(np.int64)
 
 
