@@ -111,7 +111,9 @@ def face_at(points: np.ndarray, x: float, y: float, azimuth: float) -> Face | No
     left = np.array([-ahead[1], ahead[0]])
     for _ in range(2):   # the second time along the curb itself, whose face is not blurred then
         first = cloud.mark("edge", x, y, direction, PICK.section_reach)
-        places, marks, along = ([], [], np.empty(0)) if first is None else cloud.followed("edge", _beside((x, y), direction, first.offset), direction, first)
+        if first is None:
+            return None
+        places, marks, along = cloud.followed("edge", _beside((x, y), direction, first.offset), direction, first)
         near = np.flatnonzero(np.abs(along) <= PICK.course / 2)
         if len(near) < PICK.fewest_places:
             return None

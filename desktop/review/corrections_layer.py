@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -19,13 +19,16 @@ from qgis.core import (
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtWidgets import QFileDialog, QWidget
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CORRECTIONS, OTHER
+from ...core.corrections.corrections import TARGETS
 from ...processing_provider.call import qgis_fields
-from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to
+from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to, clouds_of
 from ...processing_provider.styling import STYLES, apply_style, explain_readings
 from ...processing_provider.texts import tr
+from ..widgets import say
 from .doubtful import DoubtfulPiece
 
 NAME = "CORRECTIONS"
@@ -33,6 +36,8 @@ TABLE = "corrections"
 NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
 SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
 CHANGED = "lanewright/changed/"      # custom property of the layer, with what the corrections are about: when one was made or taken back last
+UNMADE = "lanewright/unmade"         # custom property of the layer: xmin,ymin,xmax,ymax of what changed and that no run has made, one a line
+FILE = "corrections.gpkg"
 MOVED = 2.0        # m that a piece is moved at most
 SAME_PLACE = 0.1   # m between two lines of which one is taken for the other
 
@@ -41,6 +46,36 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
     """The layers of corrections in a project, from above: made here, or dropped in."""
     layers = [node.layer() for node in project.layerTreeRoot().findLayers() if isinstance(node.layer(), QgsVectorLayer)]
     return [layer for layer in layers if NEEDED <= {field.name() for field in layer.fields()}]
+
+
+def layer_of(road_map: RoadMap | None) -> QgsVectorLayer | None:
+    """The layer that corrections of a road map go to, None before the first."""
+    vectors = [] if road_map is None else road_map.vectors
+    return corrections_of_survey(QgsProject.instance(), road_map.survey, vectors[0].extent(), vectors[0].crs()) if vectors else None
+
+
+def ask_for_file(parent: QWidget, road_map: RoadMap | None) -> str:
+    """Where the corrections are to be kept; "" where the user gave up."""
+    clouds = [] if road_map is None else clouds_of(road_map, QgsProject.instance())[0]
+    folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
+    path, _ = QFileDialog.getSaveFileName(parent, tr("File for the corrections"), str(folder / FILE), "GeoPackage (*.gpkg)",
+                                          options=QFileDialog.Option.DontConfirmOverwrite)
+    return path if not path or path.lower().endswith(".gpkg") else f"{path}.gpkg"
+
+
+def layer_to_write(iface, road_map: RoadMap, ask: Callable[[], str]) -> QgsVectorLayer | None:
+    """The layer that corrections of a road map go to, made where there is none; None where `ask` names no file, or none that can be written."""
+    if (layer := layer_of(road_map)) is not None:
+        lay_above(layer, road_map, QgsProject.instance())
+        return layer
+    path = ask()
+    if not path:
+        return None
+    try:
+        return new_corrections_layer(QgsProject.instance(), path, road_map.vectors[0].crs(), road_map.survey)
+    except RoadExtractionError as problem:
+        say(iface, str(problem), Qgis.MessageLevel.Warning)
+        return None
 
 
 def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
@@ -68,7 +103,7 @@ def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateRefe
     if not Path(path).exists():
         options = QgsVectorFileWriter.SaveVectorOptions()
         options.driverName, options.layerName = "GPKG", TABLE
-        writer = QgsVectorFileWriter.create(path, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineString, crs,
+        writer = QgsVectorFileWriter.create(path, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineStringZ, crs,
                                             project.transformContext(), options)
         problem = writer.errorMessage()
         del writer  # writes what it has
@@ -103,8 +138,8 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
 
     former : an earlier decision about the same piece, which makes room for it; without, one of the same target at the same place does
     """
-    _note_change(layer, values["target"])
     placed = _placed(line, crs, layer)
+    note_change(layer, values["target"], placed)
     former = former or correction_at(layer, line, crs, str(values["target"]))
     lacking = [column for column in CORRECTIONS if column.name in values and layer.fields().lookupField(column.name) < 0]
     if lacking:  # a layer of an earlier version
@@ -154,19 +189,43 @@ def corrections_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece]
     return made
 
 
-def take_back(layer: QgsVectorLayer) -> bool:
-    """Delete the correction that was made last; False where there is none."""
-    ids = layer.allFeatureIds()
-    if not ids:
-        return False
-    _note_change(layer, layer.getFeature(max(ids))["target"])
-    _delete(layer, [max(ids)])
+def take_back(layer: QgsVectorLayer, feature: QgsFeature | None = None) -> bool:
+    """Delete a correction, without one that which was made last; False where there is none."""
+    if feature is None:
+        numbers = layer.allFeatureIds()
+        if not numbers:
+            return False
+        feature = layer.getFeature(min(numbers) if min(numbers) < 0 else max(numbers))   # what is not saved yet has numbers below 0
+    note_change(layer, feature["target"], feature.geometry())
+    _delete(layer, [feature.id()])
     layer.triggerRepaint()
     return True
 
 
-def _note_change(layer, target):
+def note_change(layer: QgsVectorLayer, target: str, where: QgsGeometry) -> None:
+    """Note that a correction of a target has changed: what was made with it before no longer holds there."""
     layer.setCustomProperty(f"{CHANGED}{target}", datetime.now(timezone.utc).isoformat())
+    box = where.boundingBox()
+    layer.setCustomProperty(UNMADE, "\n".join([*filter(None, unmade(layer)), ",".join(
+        f"{value:.9g}" for value in (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))]))
+
+
+def unmade(layer: QgsVectorLayer) -> list[str]:
+    """Extents of what has changed and that no run has made, as `UNMADE` has them."""
+    return str(layer.customProperty(UNMADE) or "").split("\n")
+
+
+def changes_of(layer: QgsVectorLayer) -> dict[str, object]:
+    """What has changed so far and when, for `note_made`."""
+    return {key: layer.customProperty(key) for key in (UNMADE, *(f"{CHANGED}{target}" for target in TARGETS))}
+
+
+def note_made(layer: QgsVectorLayer, before: dict[str, object]) -> None:
+    """Note that a run has made all that had changed `before` it began; what changed meanwhile counts as changed now, for the next run."""
+    layer.setCustomProperty(UNMADE, "\n".join(unmade(layer)[len(str(before.pop(UNMADE) or "").split("\n")):]))
+    for key, when in before.items():
+        if layer.customProperty(key) != when:
+            layer.setCustomProperty(key, datetime.now(timezone.utc).isoformat())
 
 
 def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | None:
