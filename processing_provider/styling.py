@@ -54,7 +54,8 @@ MARGIN, LETTER = 40, 8  # pixels of a column of the attribute table: beside its 
 WORDS = {field: {value: tr(vocabulary().get(f"{field}.{value}") or vocabulary()[value]) for value in values.split()} for field, values in {
     "status": "measured bridged inferred occluded grown accepted drawn", "side": "left right", "part": "bottom top",
     "pattern": "solid dashed double-solid double-dashed solid-dashed dashed-solid", "use": "keep other", "source": "pair offset drawn",
-    "turn": "left right", "action": "accept delete move draw take", "target": "edge marking lane", "outcome": "correct missed false excluded",
+    "turn": "left right", "action": "accept delete move draw take seen",
+    "target": "edge marking lane surface warning", "outcome": "correct missed false excluded",
 }.items()}
 LINE_KINDS = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
@@ -355,7 +356,8 @@ def _symbol(layer, colour):
 # Styles that travel with a result, so that a file made without a window opens styled anywhere.
 
 NAME = "default"
-POSTGIS = "postgres://"
+PROVIDER = "postgres"   # of QGIS, for tables of PostGIS
+POSTGIS = f"{PROVIDER}://"
 
 
 def embed_style(name, dest, title, schema=(), provenance=None):
@@ -367,7 +369,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
     look, _ = LOOKS.get(name, (None, None))
     qml = STYLES / f"{look}.qml"
     if dest.startswith(POSTGIS):
-        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
+        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, PROVIDER), title, qml, schema, name, provenance)
     if path is None or look is None or not qml.exists():
         return
     if path.suffix.lower() in (".tif", ".tiff") and (layer := QgsRasterLayer(str(path), path.stem)).isValid():
@@ -380,7 +382,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
 def _in_the_database(layer, title, qml, schema, output, provenance):
     if not layer.isValid():
         return
-    if provenance is not None and layer.providerType() == "postgres":
+    if provenance is not None and layer.providerType() == PROVIDER:
         _comment_on_table(layer, "\n".join(provenance.history(output)))
     elif provenance is not None:
         describe_origin(layer, provenance, output)
@@ -400,7 +402,7 @@ def _comment_on_table(layer, text):
     uri = QgsDataSourceUri(layer.source())
     name, quoted = uri.quotedTablename(), text.replace("'", "''")
     try:
-        connection = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(uri.connectionInfo(True), {})
+        connection = QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(uri.connectionInfo(True), {})
         connection.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
     except QgsProviderConnectionException as problem:
         QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)

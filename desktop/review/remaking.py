@@ -83,7 +83,7 @@ def stretches(road_map: RoadMap, boxes: list[str], crs: QgsCoordinateReferenceSy
         middle = QgsGeometry.fromPointXY(place.center())
         near = min(lines.getFeatures(place.buffered(NEAR)), key=lambda feature: feature.geometry().distance(middle), default=None)
         if near is not None:
-            line = near.geometry()
+            line = near.geometry().extendLine(NEAR, NEAR)   # a correction may reach beyond its end
             along = [line.lineLocatePoint(QgsGeometry.fromPointXY(QgsPointXY(x, y)))
                      for x in (place.xMinimum(), place.xMaximum()) for y in (place.yMinimum(), place.yMaximum())]
             along = [line.length() - metres for metres in along] if near["direction"] == -1 else along

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from qgis.core import QgsGeometry, QgsLineString
 
+from ...core.common.errors import RoadExtractionError
 from ...core.corrections.pick import Face, face_at
 from ...core.corrections.weights import PICK
 from ...processing_provider.texts import tr
@@ -91,7 +92,11 @@ class CurbLine:
 
     def _write(self, layer, former):
         line = self.lines[-1]
-        add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line))
+        try:
+            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line))
+        except RoadExtractionError as problem:   # the disk is full, or the database is gone
+            self.lines.pop()
+            return str(problem)
         self.dock.corrected.emit()
         return tr("{curb}, is added. The next click in a section ahead or back goes on, Ctrl+Z takes this one back, Esc ends the line.",
                   curb=_evidence(line))

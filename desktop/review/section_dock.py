@@ -21,7 +21,7 @@ from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clo
 from ...processing_provider.texts import numbers, tr
 from ..background import with_points
 from ..widgets import button, column, give_map_back, row, take_map, wrapped
-from .corrections_layer import ask_for_file, layer_of
+from .corrections_layer import ask_for_corrections, layer_of
 from .section import HALF_WIDTH, Crossing, Section, corners, crossings, middle_of, section_at
 from .section_curb import CurbLine
 
@@ -45,7 +45,7 @@ class SectionDock(QDockWidget):
         for signal, what in ((self.view.kept, self.curb.keep), (self.view.dropped, self.curb.drop), (self.view.undone, self.curb.undo)):
             signal.connect(lambda what=what: self._tell(what()))
         self.said = wrapped()
-        self.ask_for_file = lambda: ask_for_file(self, self.road_map)
+        self.ask_for_file = lambda: ask_for_corrections(self, self.road_map)
         self.tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.show_at(
             point, iface.mapCanvas().mapSettings().destinationCrs()))
         self.band = None
