@@ -644,7 +644,7 @@ def test_what_no_correction_could_be_about_is_done_once_it_was_seen_and_asks_not
 
 def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_long_they_are(at_first, tmp_path, monkeypatch):
     page, opened = tmp_path / "review.html", []
-    at_first._file = lambda *names: str(page)
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.ask_for_file", lambda *names: str(page))
     monkeypatch.setattr("lanewright.desktop.review.doubt_dock.open_file", lambda iface, path: opened.append(path))
     at_first.accept_button.click()
     at_first.delete_button.click()
