@@ -37,7 +37,7 @@ from ..processing_provider.results.road_maps import (
 )
 from ..processing_provider.texts import chosen_language, tr
 from .background import SampleRun
-from .widgets import all_is_there, column, say
+from .widgets import all_is_there, column, open_file, say
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
@@ -210,13 +210,10 @@ class Menu(QObject):
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
-        if not path:
-            message = tr("No report has been written since QGIS was started.")
-        elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
-            return
+        if path:
+            open_file(self.iface, path)
         else:
-            message = tr("No web browser could be started. The report is the file {path}.").format(path=path)
-        say(self.iface, message)
+            say(self.iface, tr("No report has been written since QGIS was started."))
 
     def open_table(self):
         """What the runs since QGIS was started gave, in a window."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import defaultdict
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -17,8 +18,10 @@ from qgis.core import (
     QgsDataSourceUri,
     QgsEditorWidgetSetup,
     QgsFillSymbolLayer,
+    QgsGeometry,
     QgsGraduatedSymbolRenderer,
     QgsMapLayerStyle,
+    QgsPalLayerSettings,
     QgsProcessingLayerPostProcessorInterface,
     QgsProperty,
     QgsProviderConnectionException,
@@ -31,6 +34,7 @@ from qgis.core import (
     QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
     QgsSymbol,
+    QgsUnitTypes,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QCoreApplication, QEventLoop
@@ -54,7 +58,9 @@ MARGIN, LETTER = 40, 8  # pixels of a column of the attribute table: beside its 
 WORDS = {field: {value: tr(vocabulary().get(f"{field}.{value}") or vocabulary()[value]) for value in values.split()} for field, values in {
     "status": "measured bridged inferred occluded grown accepted drawn", "side": "left right", "part": "bottom top",
     "pattern": "solid dashed double-solid double-dashed solid-dashed dashed-solid", "use": "keep other", "source": "pair offset drawn",
-    "turn": "left right", "action": "accept delete move draw take", "target": "edge marking lane", "outcome": "correct missed false excluded",
+    "turn": "left right", "action": "accept delete move draw take seen",
+    "class": "edge lane centre zebra stop give_way zigzag arrow symbol hatch bicycle bus",
+    "target": "edge marking lane surface warning", "outcome": "correct missed false excluded",
 }.items()}
 LINE_KINDS = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
@@ -79,7 +85,7 @@ def _parts():
         "line": f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                 f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"",
         "lane": f"'{tr('Lane')} ' || \"lane\"",
-        "class": f"coalesce(\"class\", '{tr('Paint')}')",
+        "class": f"coalesce({_in_words('class')}, '{tr('Paint')}')",
         "surface": f"'{tr('Road surface')}'",
         "pass": f"'{tr('Pass')} ' || \"pass\"",
         "note": '"note"',
@@ -243,6 +249,8 @@ def apply_style(layer, qml, schema=(), output=""):
         explain_attributes(layer, output, schema)
         if layer.fields().indexOf(COLOUR.name) >= 0 and layer.renderer() is not None:
             _paint_yellow(layer.renderer().symbols(QgsRenderContext()))
+        if output == "MARKINGS":
+            _name_figures(layer)
     if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
         # Intensities have no common scale: every image is stretched to its own values
         layer.setContrastEnhancement(
@@ -253,6 +261,39 @@ def apply_style(layer, qml, schema=(), output=""):
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
             layer.rendererChanged.emit()
+
+
+# Where the signs point that the style of markings lays onto arrows, in its order
+WAYS = tr("Straight"), tr("Left"), tr("Right"), tr("Straight or left"), tr("Straight or right"), tr("Straight, left or right")
+LAID = "THEN @laid["      # there it takes the sign that fits best
+ONE_FIGURE = 4.0          # m between bars or letters of one figure
+LEAST_FIGURE = 0.3        # m² of paint that is named
+
+
+def _name_figures(layer):
+    """Name what is no line, once for all bars or letters of a figure; of arrows that are whole, where they point."""
+    rule = layer.labeling().rootRule().children()[0] if layer.labeling() is not None else None
+    if rule is None or layer.fields().lookupField("class") < 0:
+        return
+    metres = QgsUnitTypes.fromUnitToUnitFactor(layer.crs().mapUnits(), Qgis.DistanceUnit.Meters)
+    rows = defaultdict(list)
+    for row in layer.getFeatures("\"class\" not in ('edge', 'lane', 'centre')"):
+        rows[row["class"]].append(row)
+    named = []
+    for kind, members in rows.items():
+        around = 0.0 if kind == "arrow" else ONE_FIGURE / 2 / metres   # arrows side by side may point to different sides
+        for figure in QgsGeometry.unaryUnion([row.geometry().buffer(around, 4) for row in members]).asGeometryCollection():
+            box, middle = figure.boundingBox(), figure.centroid()
+            inside = [row for row in members if box.contains(row.geometry().boundingBox())]
+            if sum(row.geometry().area() for row in inside) > LEAST_FIGURE / metres**2:
+                named.append(max(inside, key=lambda row: row.geometry().distance(middle)).id())
+    settings, words = rule.settings(), _in_words("class")
+    sign, laid, _ = layer.renderer().symbol().symbolLayer(0).geometryExpression().partition(LAID)
+    ways = ", ".join(f"'{way}'" for way in WAYS)
+    settings.fieldName = f"if(\"class\" = 'arrow', {sign}THEN array({ways})[array_find(@fits, array_max(@fits)) % {len(WAYS)}] " \
+                         f"ELSE '' END))))) END, {words})" if laid else words
+    rule.setSettings(QgsPalLayerSettings(settings))
+    rule.setFilterExpression(f"$id in ({', '.join(map(str, named)) or 'NULL'})")
 
 
 YELLOW_PAINT = "#e8a800"
@@ -355,7 +396,8 @@ def _symbol(layer, colour):
 # Styles that travel with a result, so that a file made without a window opens styled anywhere.
 
 NAME = "default"
-POSTGIS = "postgres://"
+PROVIDER = "postgres"   # of QGIS, for tables of PostGIS
+POSTGIS = f"{PROVIDER}://"
 
 
 def embed_style(name, dest, title, schema=(), provenance=None):
@@ -367,7 +409,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
     look, _ = LOOKS.get(name, (None, None))
     qml = STYLES / f"{look}.qml"
     if dest.startswith(POSTGIS):
-        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
+        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, PROVIDER), title, qml, schema, name, provenance)
     if path is None or look is None or not qml.exists():
         return
     if path.suffix.lower() in (".tif", ".tiff") and (layer := QgsRasterLayer(str(path), path.stem)).isValid():
@@ -380,7 +422,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
 def _in_the_database(layer, title, qml, schema, output, provenance):
     if not layer.isValid():
         return
-    if provenance is not None and layer.providerType() == "postgres":
+    if provenance is not None and layer.providerType() == PROVIDER:
         _comment_on_table(layer, "\n".join(provenance.history(output)))
     elif provenance is not None:
         describe_origin(layer, provenance, output)
@@ -400,7 +442,7 @@ def _comment_on_table(layer, text):
     uri = QgsDataSourceUri(layer.source())
     name, quoted = uri.quotedTablename(), text.replace("'", "''")
     try:
-        connection = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(uri.connectionInfo(True), {})
+        connection = QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(uri.connectionInfo(True), {})
         connection.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
     except QgsProviderConnectionException as problem:
         QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)

@@ -134,10 +134,12 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   *(Field(f"{point}_{axis}", float, f"{point.upper()} {axis}", on_map=True) for point in ("pc", "pt", "pi") for axis in "xy"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
-CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
+CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take/seen)"),
+               Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
                STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
                Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
-               Field("other", str, "Second reading that is taken (JSON)")]
+               Field("other", str, "Second reading that is taken (JSON)"), Field("author", str, "Decided by"),
+               Field("decided_at", str, "Decided at (UTC)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen"),
                 Field("row", int, "Row of the report"), Field("places", int, "Places with the same finding")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),

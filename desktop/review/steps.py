@@ -17,8 +17,9 @@ from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
 from ...processing_provider.results.road_maps import CLOUDS, RoadMap, origin_of
+from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
-from ..dialogs.algorithm_dialog import PROVIDER, table_of_database
+from ..dialogs.algorithm_dialog import table_of_database
 from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again
 from ..widgets import button, column, row, wrapped
 from .corrections_layer import NAME, changed_at

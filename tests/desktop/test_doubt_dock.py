@@ -1,7 +1,10 @@
 """The window of doubtful places, and the corrections that are made in it."""
 
+import os
+import re
 from dataclasses import replace
 from types import SimpleNamespace
+from uuid import uuid4
 
 import numpy as np
 import pytest
@@ -9,12 +12,12 @@ from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import smart_pick
-from lanewright.desktop.review.corrections_layer import corrections_layers
+from lanewright.desktop.review.corrections_layer import add_correction, corrections_layers, corrections_of, new_corrections_layer
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
 from lanewright.processing_provider.styling import second_reading
-from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsProviderRegistry, QgsRectangle, QgsSettings, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtGui import QImage
@@ -25,6 +28,7 @@ from road_map_layers import EAST, NORTH, added, run_at
 @pytest.fixture
 def window(qgis_app):
     """A dock beside a map of a road with two doubtful places; of the first, an edge was bridged and a lane inferred."""
+    QgsSettings().remove("lanewright/doubts")
     project = QgsProject.instance()
     project.clear()
     piece = lambda at, **row: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, station_m=float(at), length_m=8.0, **row))  # noqa: E731
@@ -398,3 +402,112 @@ def test_a_list_of_photos_with_names_beside_it_is_enough(window, tmp_path):
         f"file://{tmp_path}/list.csv?type=csv&xField=x&yField=y&crs=EPSG:32650", "list", "delimitedtext"))
     window.go(road_maps(QgsProject.instance())[0])
     assert window.photo.photo.path == tmp_path / "a.jpg" and window.photo.photo.distance > 5, "the nearer one lies on another computer"
+
+
+# -- two people
+
+def place_of_colleagues(kind, folder):
+    """A new file, or a new table of the server that libpq's variables name."""
+    if kind == "file":
+        return str(folder / "corrections.gpkg")
+    return f"dbname='{os.environ['PGDATABASE']}' key='id' table=\"public\".\"corrections_{uuid4().hex[:8]}\" (geom)"
+
+
+@pytest.fixture(params=["file", *(["database"] if os.environ.get("PGHOST") else [])])
+def colleague(request, at_first, tmp_path):
+    """The corrections of the window, which has accepted the first edge, as a colleague has them open: by a connection and project of his own."""
+    place = place_of_colleagues(request.param, tmp_path)
+    at_first.ask_for_file = lambda: place
+    at_first.ask = lambda question: pytest.fail(f"nothing is to be asked: {question}")
+    at_first.accept_button.click()
+    theirs = QgsProject()
+    yield new_corrections_layer(theirs, place, at_first.layer.crs(), "B12")
+    if request.param == "database":
+        QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(place, {}).dropVectorTable(
+            "public", re.search("corrections_[^\"]*", place)[0])
+
+
+def decides(colleague, piece, action, author="Ada"):
+    """What the window of the colleague writes."""
+    former = corrections_of(colleague, [piece], colleague.crs()).get(0)
+    number = add_correction(colleague, piece.line, colleague.crs(), former, action=action, target=piece.target, road=piece.road,
+                            station_m=piece.station)
+    colleague.dataProvider().changeAttributeValues({number: {colleague.fields().lookupField("author"): author}})
+
+
+def test_two_people_decide_about_different_places_and_see_what_the_other_has_done(at_first, colleague):
+    decides(colleague, at_first.places[1].pieces[0], "delete")
+    at_first.accept_button.click()
+    assert [action for action, *_ in corrections()] == ["accept", "delete", "accept"] and "3." in at_first.kept.text()
+    assert at_first.place.station == 80 and "2 done" in at_first.where.text()
+    assert "→ delete (Ada)" in at_first.list.item(0).text()
+    begin, end = QgsPointXY(EAST + 20, NORTH + 4), QgsPointXY(EAST + 31, NORTH + 4)
+    add_correction(colleague, QgsGeometry.fromPolylineXY([begin, end]), colleague.crs(), action="draw", target="edge")
+    assert len(corrections()) == 4
+
+
+def test_who_decides_later_about_the_same_piece_is_told_and_chooses(at_first, colleague):
+    asked = []
+    at_first.ask = lambda question: bool(asked.append(question))
+    decides(colleague, at_first.chosen[0], "delete")
+    at_first.accept_button.click()
+    assert len(asked) == 1 and "→ delete (Ada)" in asked[0] and [action for action, *_ in corrections()] == ["accept", "delete"]
+    assert "→ delete (Ada)" in at_first.list.currentItem().text(), "the list shows what holds now"
+    at_first.accept_button.click()
+    assert len(asked) == 1 and [action for action, *_ in corrections()] == ["accept", "accept"], "seen and decided: theirs makes room"
+
+
+def test_a_line_that_moves_what_a_colleague_has_decided_meanwhile_is_not_lost(at_first, colleague):
+    at_first.move_button.click()
+    decides(colleague, at_first.chosen[0], "delete")
+    at_first.ask = lambda question: "→ delete (Ada)" in question
+    for x in (14, 22):
+        at_first.tool.add(QgsPointXY(EAST + x, NORTH + 1))
+    at_first.tool.finish()
+    assert [action for action, *_ in corrections()] == ["accept", "move"]
+
+
+def test_a_correction_of_a_colleague_is_not_taken_back(at_first, colleague):
+    decides(colleague, at_first.places[1].pieces[0], "delete")
+    at_first.undo_button.click()
+    assert [action for action, *_ in corrections()] == ["delete"] and not at_first.undo_button.isEnabled()
+
+
+# -- what is gone through, and the report of it
+
+def test_short_pieces_are_passed_over_and_the_choice_is_kept(at_first):
+    at_first.kinds.setCurrentIndex(at_first.kinds.findData("edge"))
+    at_first.shortest.setValue(8.0)
+    assert [place.station for place in at_first.places] == [10.0, 80.0]
+    at_first.shortest.setValue(9.0)
+    assert at_first.places == [] and at_first.list.count() == 0
+    again = DoubtDock(at_first.iface)
+    assert (again.kinds.currentData(), again.shortest.value()) == ("edge", 9.0)
+    again.remove()
+
+
+def test_what_no_correction_could_be_about_is_done_once_it_was_seen_and_asks_nothing_of_the_map(window, tmp_path):
+    project = QgsProject.instance()
+    whole, half = ((f"LINESTRING Z (0 {y} 100, {end} {y} 100)", dict(
+        road=0, side=side, status="measured", kind="along", station_m=0.0, end_m=end, length_m=end)) for side, y, end in (
+            ("left", 4, 100.0), ("right", -4, 50.0)))
+    added(project, "ROAD_EDGES", ROAD_EDGES, whole, half, run=run_at(9))
+    window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
+    window.go(road_maps(project)[0])
+    assert "No road edge on the right for 50 m" in window.list.item(0).text() and not window.delete_button.isEnabled()
+    window.accept_button.click()
+    assert "1 done" in window.where.text() and "→ seen" in window.list.item(0).text()
+    assert [(action, target) for action, target, *_ in corrections()] == [("seen", "edge")]
+
+
+def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_long_they_are(at_first, tmp_path, monkeypatch):
+    page, opened = tmp_path / "review.html", []
+    at_first._file = lambda *names: str(page)
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.open_file", lambda iface, path: opened.append(path))
+    at_first.accept_button.click()
+    at_first.delete_button.click()
+    at_first.report_button.click()
+    cells = re.sub(r"(\s*<[^>]*>\s*)+", "|", page.read_text(encoding="utf-8"))
+    assert opened == [str(page)]
+    assert "|lane|0|0|1|8|0|0|0|0|0|" in cells and "|edge|1|8|0|0|0|0|1|8|1|" in cells and "|Together|1|8|1|8|0|0|1|8|1|" in cells
+    assert "|0|80.0|8.0|1.2|Road edge" in cells, cells

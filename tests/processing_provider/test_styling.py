@@ -27,6 +27,7 @@ from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
@@ -331,3 +332,34 @@ def test_no_style_makes_the_window_wait(path):
             depth += {"(": 1, ")": -1}.get(letter, 0)
             deepest = max(deepest, depth)
         assert deepest <= 12, value
+
+
+def named_by(layer):
+    """{cluster: what stands beside it} of the markings of a layer."""
+    rule = layer.labeling().rootRule().children()[0]
+    text, texts = QgsExpression(rule.settings().fieldName), {}
+    assert not text.hasParserError(), text.parserErrorString()
+    for row in layer.getFeatures(rule.filterExpression()):
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+        context.setFeature(row)
+        texts[row["cluster"]] = text.evaluate(context)
+    return texts
+
+
+def test_classes_of_paint_are_named_once_for_a_figure_and_arrows_by_where_they_point(qgis_app):
+    layer = layer_of("Polygon", MARKINGS)
+    layer.setCrs(QgsCoordinateReferenceSystem("EPSG:32650"))
+    bar = "POLYGON(({0} {1}, {2} {1}, {2} {3}, {0} {3}, {0} {1}))"
+    left = "POLYGON((-0.1 0, 0.1 0, 0.1 2.7, -0.4 3.5, 0 4.2, -1 4.5, -0.6 2.8, -0.5 3, -0.1 2.3, -0.1 0))"
+    shapes = [("zebra", bar.format(x, 20, x + 0.5, 24)) for x in range(6)] + [("zebra", bar.format(40, 20, 40.5, 24)), ("arrow", left)]
+    shapes += [("arrow", "POLYGON((3 0, 3.2 0, 3.2 2, 3.3 2, 3.1 3, 2.9 2, 3 2, 3 0))"), ("stop", bar.format(0, 30, 3, 30.5)),
+               ("symbol", bar.format(60, 0, 60.3, 0.5)), ("lane", bar.format(0, 50, 0.12, 53))]
+    for cluster, (kind, shape) in enumerate(shapes):
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromWkt(shape))
+        feature["cluster"], feature["class"] = cluster, kind
+        layer.dataProvider().addFeature(feature)
+    apply_style(layer, STYLES / "markings.qml", MARKINGS, "MARKINGS")
+    texts = named_by(layer)
+    assert sorted(texts.values()) == ["Left", "Stop line", "Straight", "Zebra crossing", "Zebra crossing"], texts
+    assert texts[6] == "Zebra crossing" and texts[7] == "Left", "a lane line, and a fleck of paint, have no name"
