@@ -359,13 +359,12 @@ def _signals(whole, places, crs):
 
 def _known(whole, lanelet):
     """What a map says of the road of a lanelet, as ROAD_ATTRIBUTES."""
-    tags = lanelet.tags
-    signs = [whole.others[id].tags.get("sign_type", "") for _, id in lanelet.members.get("regulatory_element", ())
-             if id in whole.others and whole.others[id].tags.get("subtype") == "speed_limit"]
+    tags, rules = lanelet.tags, [whole.others[id] for _, id in lanelet.members.get("regulatory_element", ()) if id in whole.others]
+    signs = [rule.tags.get("sign_type", "") for rule in rules if rule.tags.get("subtype") == "speed_limit"]
     speed = kmh(tags.get("speed_limit", "")) or next((kmh(sign.rpartition("-")[2]) for sign in signs), None)
-    first = [str(id) for _, rule in lanelet.members.get("regulatory_element", ()) if rule in whole.others
-             and ("relation", lanelet.id) in whole.others[rule].members.get("yield", ()) for _, id in whole.others[rule].members.get("right_of_way", ())]
-    known = {"speed_kmh": speed, "name": tags.get("road_name"), "surface": tags.get("road_surface"), "yields_to": ",".join(dict.fromkeys(first))}
+    first = dict.fromkeys(str(id) for rule in rules if ("relation", lanelet.id) in rule.members.get("yield", ())
+                          for _, id in rule.members.get("right_of_way", ()))
+    known = {"speed_kmh": speed, "name": tags.get("road_name"), "surface": tags.get("road_surface"), "yields_to": ",".join(first)}
     return {name: value for name, value in known.items() if value}
 
 

@@ -241,10 +241,11 @@ class LaneNetwork:
     def touched(self) -> dict[tuple[LaneKey, str], list[tuple[LaneKey, str]]]:
         """(lane, which of its ends) of all that any lane is linked to -> those lanes and their ends."""
         touched = defaultdict(list)
-        for key in [(road.id, number, id) for road in self.roads.values() for number, section in enumerate(road.sections) for id in section.lanes if id]:
-            for end in LINK_NAMES:
-                for lane_end in self.touching(key, end):
-                    touched[lane_end].append((key, end))
+        for road in self.roads.values():
+            for key in [(road.id, number, id) for number, section in enumerate(road.sections) for id in section.lanes if id]:
+                for end in LINK_NAMES:
+                    for lane_end in self.touching(key, end):
+                        touched[lane_end].append((key, end))
         return dict(touched)
 
     def is_open(self, key: LaneKey, end: str) -> bool:

@@ -239,9 +239,9 @@ def _first_at_junctions(whole):
         ways = defaultdict[str, list[str]](list)
         for connection in junction.connections:
             road = whole.road(connection.connecting)
-            names = [road.lane_name(lane, 0 if connection.contact == "start" else len(road.sections) - 1) for _, lane in connection.lanes] if road else []
-            for id in (connection.connecting, connection.incoming):
-                ways[id] += names
+            section = len(road.sections) - 1 if road is not None and connection.contact == "end" else 0
+            for id in (connection.connecting, connection.incoming) if road is not None else ():
+                ways[id] += [road.lane_name(lane, section) for _, lane in connection.lanes]
         for high, low in junction.priorities:
             for name in ways[low]:
                 first[name] |= dict.fromkeys(ways[high])
