@@ -2,9 +2,11 @@
 
 import html
 import re
+from datetime import datetime, timezone
 
 import numpy as np
 import pytest
+from lanewright.algorithms.provenance import Provenance
 from lanewright.core.common.features import (
     CONTROL_POINTS,
     CROSS_SECTIONS,
@@ -23,7 +25,7 @@ from lanewright.core.common.features import (
 from lanewright.core.driving.layers import LANE_TYPES
 from lanewright.processing_provider.call import qgis_fields
 from lanewright.processing_provider.results.road_maps import Run
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, style_on_load
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, say_in_users_language, style_on_load
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (
@@ -42,6 +44,7 @@ from qgis.core import (
     QgsRenderContext,
     QgsSymbol,
     QgsSymbolLayerUtils,
+    QgsVectorFileWriter,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QSize
@@ -363,3 +366,28 @@ def test_classes_of_paint_are_named_once_for_a_figure_and_arrows_by_where_they_p
     texts = named_by(layer)
     assert sorted(texts.values()) == ["Left", "Stop line", "Straight", "Zebra crossing", "Zebra crossing"], texts
     assert texts[6] == "Zebra crossing" and texts[7] == "Left", "a lane line, and a fleck of paint, have no name"
+
+
+@pytest.mark.parametrize("made_in, opened_in, legend", [("en", "de", "Bordstein"), ("de", "en", "Curb")])
+def test_layers_of_a_colleague_speak_the_language_of_who_opens_them_and_keep_their_colours(tmp_path, provider, qgis_app, made_in, opened_in, legend):
+    path = str(tmp_path / "theirs.gpkg")
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    options.layerName = "road_edges"
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer_of("LineString", ROAD_EDGES), path, QgsProject.instance().transformContext(), options)
+    provenance = Provenance("roadmap", "1.0", {}, datetime(2026, 6, 1, 8, tzinfo=timezone.utc))
+    try:
+        speak(made_in)
+        embed_style("ROAD_EDGES", f"ogr:dbname='{path}' table=\"road_edges\" (geom)", "Road edges", ROAD_EDGES, provenance)
+        speak(opened_in)
+        layer = QgsVectorLayer(f"{path}|layername=road_edges", "roadmap", "ogr")
+        before = layer.renderer().symbols(QgsRenderContext())[0].dump()
+        say_in_users_language([layer, layer_of("LineString", ROAD_EDGES)])
+        titles = [category.label() for category in layer.renderer().categories()]
+        alias = layer.attributeAlias(layer.fields().lookupField("side"))
+        assert legend in titles and alias == {"de": "Seite", "en": "Side"}[opened_in], (titles, alias)
+        assert layer.renderer().symbols(QgsRenderContext())[0].dump() == before and len(layer.styleManager().styles()) > 1
+        layer.setFieldAlias(0, "Mine")
+        say_in_users_language([layer])
+        assert layer.attributeAlias(0) == "Mine", "once"
+    finally:
+        speak("en")
