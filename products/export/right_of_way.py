@@ -15,7 +15,7 @@ GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH",
             ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
 
 
-class RightOfWay(NamedTuple):
+class _RightOfWay(NamedTuple):
     """waiting, first : lane_ids; signs : rows of the layer SIGNALS that say so; conflicts : (row of a way through the junction that waits, row of
     one that goes first) of ways that cross."""
 
@@ -30,7 +30,7 @@ def named(text: object) -> list[str]:
     return [name for part in str(text or "").split(",") if (name := part.strip())]
 
 
-def rights_of_way(source: RoadMapSource) -> list[RightOfWay]:
+def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
     """One for each group of lanes that wait for the same ones; of lanes that state nothing, one for each sign at which they give way.
 
     Before a sign go the lanes whose ways through the junction cross theirs and that have no such sign.
@@ -60,7 +60,7 @@ def rights_of_way(source: RoadMapSource) -> list[RightOfWay]:
     for number, names in signs.items():
         if names := [name for name in names if not any(_meet(ways, [name], waiting) for waiting in stated.values())]:
             rights.append((names, [other for other in others if conflicts(names, [other])], [number]))
-    return [RightOfWay(list(names), list(first), number, conflicts(names, first)) for names, first, number in rights if first]
+    return [_RightOfWay(list(names), list(first), number, conflicts(names, first)) for names, first, number in rights if first]
 
 
 def _meet(ways, names, others):
