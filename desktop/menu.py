@@ -34,6 +34,7 @@ from ..processing_provider.results.road_maps import (
     run_table,
     run_tables,
 )
+from ..processing_provider.styling import say_in_users_language
 from ..processing_provider.texts import chosen_language, tr
 from .background import SampleRun
 from .widgets import all_is_there, column, open_file, say
@@ -87,6 +88,7 @@ class Menu(QObject):
                   theme("/mActionHelpContents.svg"))
         # QGIS asks when it shows the menu of a layer: only then is it known what the layer is
         iface.layerTreeView().contextMenuAboutToShow.connect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.connect(say_in_users_language)   # also those of a colleague, from a file in another language
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
@@ -224,6 +226,7 @@ class Menu(QObject):
 
     def remove(self):
         self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.disconnect(say_in_users_language)
         self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
