@@ -167,7 +167,8 @@ ROADSIDE_OBJECTS = [ROAD, SIDE, Field("kind", str, "Kind (pole/sign/trunk)"), ST
 # of the roads of other maps and of OpenStreetMap, which lanes may carry beside the fields of a survey
 ROAD_ATTRIBUTES = [Field("speed_kmh", float, "Speed limit (km/h)", needed=False), Field("name", str, "Name of the road", needed=False),
                    Field("ref", str, "Number of the road", needed=False), Field("surface", str, "Surface", needed=False),
-                   Field("lanes", int, "Lanes of the road", needed=False), Field("oneway", str, "One-way road (yes/no)", needed=False)]
+                   Field("lanes", int, "Lanes of the road", needed=False), Field("oneway", str, "One-way road (yes/no)", needed=False),
+                   Field("yields_to", str, "Lanes that go first, by lane_id", needed=False)]
 # the point of a signal is the middle of its lower edge, that of a pole its foot
 SIGNALS = [Field("kind", str, "Kind (traffic_light/sign/pole)"),
            *(Field(name, type_, alias, needed=False) for name, type_, alias in (
