@@ -25,8 +25,8 @@ NUMBERS = {
     "core/curves": 9,
     "core/survey": 76,
     "core/road": 17,
-    "core/intensity": 12,
-    "core/markings": 60,
+    "core/intensity": 15,
+    "core/markings": 56,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,
@@ -275,7 +275,8 @@ PRONOUNS = {"found", "own", "said", "told"}   # of something that has a name
 
 def test_no_pronoun_is_a_name():
     named = []
-    for path in sorted(path for path in ROOT.rglob("*.py") if not {"build", "tests", "tools", "docs"} & set(path.relative_to(ROOT).parts)):
+    code = [top for top in ROOT.iterdir() if top.name not in ("build", "tests", "tools", "docs")]   # build may hold a whole system
+    for path in sorted([path for top in code for path in top.rglob("*.py")] + [top for top in code if top.suffix == ".py"]):
         for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(function, (ast.FunctionDef, ast.Lambda)):
                 nodes = list(ast.walk(function))
