@@ -27,7 +27,7 @@ from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 class EdgeSettings(Limited):
     """How curb points become lines.
 
-    max_gap : m that are bridged where something hides the curb; up to three times as long where both parts lie in one line. Longer gaps interrupt the edge
+    max_gap : m that are bridged where something hides the curb; up to three times as long where both parts lie in one line. Longer ones stay open
     fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
 
