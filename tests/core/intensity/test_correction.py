@@ -64,6 +64,18 @@ def corrected(records, frame=None, settings=IntensitySettings(), section_length=
     return found.all_points(), report
 
 
+@pytest.mark.parametrize("photographs", [True, False])
+def test_brightness_of_photographs_stays_as_it_is_wherever_the_vehicle_drove_and_a_scanner_s_own_is_corrected(photographs):
+    records, across, _ = street()
+    grain = np.random.default_rng(1).normal(0, 400, (2000, 400))
+    pixel = grain[(records["s"] // 400).astype(int), (records["d"] // 400 + 200).astype(int)]
+    by_point = np.random.default_rng(2).normal(0, 400, len(records))
+    records["intensity"] = np.rint(4000 + 200 * across + (pixel if photographs else by_point))
+    points, report = corrected(records)
+    assert ("photographs" in report.reason) == photographs
+    assert np.isnan(points.corrected).all() == photographs
+
+
 def levels(points, value, paint):
     """Median of asphalt in each metre across and for each scanner, (scanners, metres)."""
     metre = np.floor(points.d).astype(int)
