@@ -8,7 +8,7 @@ from string import Formatter
 
 from ..core.common.texts import CoreMessages, numbers, set_translation, told, tr
 
-__all__ = ["languages", "numbers", "speak", "told", "tr"]
+__all__ = ["languages", "numbers", "retold", "speak", "told", "tr"]
 
 TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
 
@@ -51,6 +51,18 @@ def speak(language="en"):
     messages = CoreMessages(TRANSLATIONS / f"core_{short}.json", lambda word: numbers(translated(word)))
     set_translation(translated, messages.told, short)
     return True
+
+
+@cache
+def _english():
+    """{text in any of the languages: the same in English}; what is English too stays as it is."""
+    files = [json.loads(path.read_text(encoding="utf-8")) for path in TRANSLATIONS.glob("lanewright_*.json")]
+    return {text: english for texts in files for english, text in texts.items()} | {english: english for texts in files for english in texts}
+
+
+def retold(text):
+    """A text of `tr` in whatever language, in the user's; another text stays as it is."""
+    return tr(_english().get(text, text))
 
 
 @cache

@@ -28,16 +28,16 @@ from ..processing_provider.results.road_maps import (
     NAMES_ONLY,
     REPLACES_LAST_RUN,
     RoadMap,
-    clouds_of,
     last_report,
     last_run,
     road_maps,
     run_table,
     run_tables,
 )
+from ..processing_provider.styling import say_in_users_language
 from ..processing_provider.texts import chosen_language, tr
 from .background import SampleRun
-from .widgets import all_is_there, column, say
+from .widgets import all_is_there, column, open_file, say
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
@@ -88,6 +88,7 @@ class Menu(QObject):
                   theme("/mActionHelpContents.svg"))
         # QGIS asks when it shows the menu of a layer: only then is it known what the layer is
         iface.layerTreeView().contextMenuAboutToShow.connect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.connect(say_in_users_language)   # also those of a colleague, from a file in another language
         # A toolbar of its own would take a row of the window for one button
         iface.addToolBarIcon(self.actions[0])
 
@@ -131,6 +132,7 @@ class Menu(QObject):
             from .review.section_dock import SectionDock
 
             self.section = SectionDock(self.iface)
+            self.section.corrected.connect(lambda: self.doubts.corrected() if self.doubts is not None else None)
         self.section.show()
         self.section.pick.click()
         if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
@@ -170,6 +172,7 @@ class Menu(QObject):
 
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
+            self.doubts.made_again.connect(lambda road_map: self.section.goes_on_in(road_map) if self.section is not None else None)
             self.doubts.run_wanted.connect(self.run_again)
             self.doubts.stage_wanted.connect(self.open_algorithm)
         (self.doubts.show_steps if steps else self.doubts.go)(maps[0])
@@ -188,11 +191,9 @@ class Menu(QObject):
 
     def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it, if any."""
-        from .review.steps import saved, values_again
+        from .review.steps import saved, values_with
 
-        clouds, missing = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**values_again(road_map), **({} if missing else {"POINT_CLOUDS": clouds}),
-                              "CORRECTIONS": None if corrections is None else corrections.id()})
+        self.open_road_map(**values_with(road_map, corrections))
         places = saved(road_map)
         folders = [path.parent for path in map(destination_path, places.values()) if path is not None]
         if folders and self.dialog is not None:
@@ -210,13 +211,10 @@ class Menu(QObject):
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
-        if not path:
-            message = tr("No report has been written since QGIS was started.")
-        elif QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
-            return
+        if path:
+            open_file(self.iface, path)
         else:
-            message = tr("No web browser could be started. The report is the file {path}.").format(path=path)
-        say(self.iface, message)
+            say(self.iface, tr("No report has been written since QGIS was started."))
 
     def open_table(self):
         """What the runs since QGIS was started gave, in a window."""
@@ -228,6 +226,7 @@ class Menu(QObject):
 
     def remove(self):
         self.iface.layerTreeView().contextMenuAboutToShow.disconnect(self._fill_layer_menu)
+        QgsProject.instance().layersAdded.disconnect(say_in_users_language)
         self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)

@@ -9,6 +9,8 @@ from weakref import WeakKeyDictionary
 from qgis.core import Qgis, QgsApplication, QgsCoordinateReferenceSystem, QgsMapLayer, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas, QgsMapTool, QgsMessageViewer
 from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QUrl
+from qgis.PyQt.QtGui import QDesktopServices
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QHBoxLayout, QLabel, QLayout, QPushButton, QVBoxLayout, QWidget
 
 from ..processing_provider.dependencies import how_to_install, install_command, missing_in_short
@@ -116,6 +118,12 @@ def give_map_back(canvas: QgsMapCanvas, tool: QgsMapTool) -> None:
 def say(iface, text: str, level: Qgis.MessageLevel = Qgis.MessageLevel.Info) -> None:
     """A line in QGIS's message bar."""
     iface.messageBar().pushMessage("Lanewright", text, level=level)
+
+
+def open_file(iface, path: str) -> None:
+    """Show a page in the user's web browser; where none starts, say which file it is."""
+    if not QDesktopServices.openUrl(QUrl.fromLocalFile(path)):
+        say(iface, tr("No web browser could be started. The report is the file {path}.").format(path=path))
 
 
 # What the plugin says in QGIS's message bar: which Python packages are missing, and what a run has made.

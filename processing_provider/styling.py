@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import defaultdict
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -17,8 +18,11 @@ from qgis.core import (
     QgsDataSourceUri,
     QgsEditorWidgetSetup,
     QgsFillSymbolLayer,
+    QgsGeometry,
     QgsGraduatedSymbolRenderer,
+    QgsMapLayer,
     QgsMapLayerStyle,
+    QgsPalLayerSettings,
     QgsProcessingLayerPostProcessorInterface,
     QgsProperty,
     QgsProviderConnectionException,
@@ -28,21 +32,23 @@ from qgis.core import (
     QgsRenderContext,
     QgsRendererCategory,
     QgsRendererRange,
+    QgsRuleBasedLabeling,
     QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
     QgsSymbol,
+    QgsUnitTypes,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QCoreApplication, QEventLoop
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
+from ..algorithms.algorithm import MAP_LAYERS
 from ..algorithms.destinations import destination_path
 from ..core.common.features import COLOUR, OTHER
-from ..core.common.texts import vocabulary
-from ..core.lazy import gdal
-from .results.road_maps import GROUP, describe_origin, place_layer
-from .texts import tr
+from ..core.common.texts import language, vocabulary
+from .results.road_maps import GROUP, describe_origin, output_of, place_layer
+from .texts import retold, tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 # Decimals that mean something, what a feature is, in expressions of QGIS whose fields stand in quotes, and the colours of its values
@@ -54,7 +60,9 @@ MARGIN, LETTER = 40, 8  # pixels of a column of the attribute table: beside its 
 WORDS = {field: {value: tr(vocabulary().get(f"{field}.{value}") or vocabulary()[value]) for value in values.split()} for field, values in {
     "status": "measured bridged inferred occluded grown accepted drawn", "side": "left right", "part": "bottom top",
     "pattern": "solid dashed double-solid double-dashed solid-dashed dashed-solid", "use": "keep other", "source": "pair offset drawn",
-    "turn": "left right", "action": "accept delete move draw take", "target": "edge marking lane", "outcome": "correct missed false excluded",
+    "turn": "left right", "action": "accept delete move draw take seen",
+    "class": "edge lane centre zebra stop give_way zigzag arrow symbol hatch bicycle bus",
+    "target": "edge marking lane surface warning", "outcome": "correct missed false excluded",
 }.items()}
 LINE_KINDS = {"edge": tr("Edge line"), "centre": tr("Centre line"), "lane": tr("Lane line")}
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
@@ -63,7 +71,7 @@ DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not dr
 def _in_words(field):
     """The value of a field in the user's language, also of a layer that was made in another."""
     words = DIRECTIONS if field == "direction" else WORDS[field]
-    pairs = ", ".join("'{}', '{}'".format(value, label.replace("'", "''")) for value, label in words.items())
+    pairs = ", ".join("'{}', '{}'".format(value, retold(label).replace("'", "''")) for value, label in words.items())
     return f'coalesce(map_get(map({pairs}), to_string("{field}")), to_string("{field}"))'
 
 
@@ -79,7 +87,7 @@ def _parts():
         "line": f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                 f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"",
         "lane": f"'{tr('Lane')} ' || \"lane\"",
-        "class": f"coalesce(\"class\", '{tr('Paint')}')",
+        "class": f"coalesce({_in_words('class')}, '{tr('Paint')}')",
         "surface": f"'{tr('Road surface')}'",
         "pass": f"'{tr('Pass')} ' || \"pass\"",
         "note": '"note"',
@@ -114,20 +122,10 @@ def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]
 def explain_readings(layer: QgsVectorLayer) -> None:
     """Show the values of the field `other`, which are JSON, in words: by a map of those that the layer has now, which needs no plugin."""
     index = layer.fields().lookupField(OTHER.name)
-    values = sorted(str(value) for value in _values(layer, index) if value)
+    values = sorted(str(value) for value in layer.uniqueValues(index) if value)
+    layer.dataProvider().reloadData()   # or QGIS's connection would keep a file open after the run
     layer.setFieldAlias(index, layer.attributeAlias(index).removesuffix(" (JSON)"))
     layer.setEditorWidgetSetup(index, QgsEditorWidgetSetup("ValueMap", {"map": [{second_reading(value): value} for value in values]}))
-
-
-def _values(layer, index):
-    """Values of a field. Those of a file are read without QGIS, whose connections would keep it open after the run."""
-    if layer.providerType() != "ogr":
-        return layer.uniqueValues(index)
-
-    uri = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
-    data = gdal.OpenEx(uri["path"], gdal.OF_VECTOR)
-    table = data and (data.GetLayerByName(uri["layerName"]) if uri.get("layerName") else data.GetLayer(0))
-    return {feature.GetField(layer.fields().at(index).name()) for feature in table} if table else set()
 
 
 def second_reading(other: str) -> str:
@@ -243,6 +241,8 @@ def apply_style(layer, qml, schema=(), output=""):
         explain_attributes(layer, output, schema)
         if layer.fields().indexOf(COLOUR.name) >= 0 and layer.renderer() is not None:
             _paint_yellow(layer.renderer().symbols(QgsRenderContext()))
+        if output == "MARKINGS":
+            _name_figures(layer)
     if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
         # Intensities have no common scale: every image is stretched to its own values
         layer.setContrastEnhancement(
@@ -253,6 +253,41 @@ def apply_style(layer, qml, schema=(), output=""):
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
             layer.rendererChanged.emit()
+
+
+# Where the signs point that the style of markings lays onto arrows, in its order
+WAYS = tr("Straight"), tr("Left"), tr("Right"), tr("Straight or left"), tr("Straight or right"), tr("Straight, left or right")
+LAID = "THEN @laid["      # there it takes the sign that fits best
+ONE_FIGURE = 4.0          # m between bars or letters of one figure
+LEAST_FIGURE = 0.3        # m² of paint that is named
+ONE_OF = "$id in "        # with these, the rule is ours
+
+
+def _name_figures(layer):
+    """Name what is no line, once for all bars or letters of a figure; of arrows that are whole, where they point."""
+    rule = layer.labeling().rootRule().children()[0] if isinstance(layer.labeling(), QgsRuleBasedLabeling) else None
+    if rule is None or layer.fields().lookupField("class") < 0 or rule.filterExpression().partition("(")[0] not in ("", ONE_OF):
+        return
+    metres = QgsUnitTypes.fromUnitToUnitFactor(layer.crs().mapUnits(), Qgis.DistanceUnit.Meters)
+    rows = defaultdict(list)
+    for row in layer.getFeatures("\"class\" not in ('edge', 'lane', 'centre')"):
+        rows[row["class"]].append(row)
+    layer.dataProvider().reloadData()   # as above
+    named = []
+    for kind, members in rows.items():
+        around = 0.0 if kind == "arrow" else ONE_FIGURE / 2 / metres   # arrows side by side may point to different sides
+        for figure in QgsGeometry.unaryUnion([row.geometry().buffer(around, 4) for row in members]).asGeometryCollection():
+            box, middle = figure.boundingBox(), figure.centroid()
+            inside = [row for row in members if box.contains(row.geometry().boundingBox())]
+            if sum(row.geometry().area() for row in inside) > LEAST_FIGURE / metres**2:
+                named.append(max(inside, key=lambda row: row.geometry().distance(middle)).id())
+    settings, words = rule.settings(), _in_words("class")
+    sign, laid, _ = layer.renderer().symbol().symbolLayer(0).geometryExpression().partition(LAID)
+    ways = ", ".join(f"'{retold(way)}'" for way in WAYS)
+    settings.fieldName = f"if(\"class\" = 'arrow', {sign}THEN array({ways})[array_find(@fits, array_max(@fits)) % {len(WAYS)}] " \
+                         f"ELSE '' END))))) END, {words})" if laid else words
+    rule.setSettings(QgsPalLayerSettings(settings))
+    rule.setFilterExpression(f"{ONE_OF}({', '.join(map(str, named)) or 'NULL'})")
 
 
 YELLOW_PAINT = "#e8a800"
@@ -284,6 +319,7 @@ def style_on_load(name, dest, title, context, schema=(), run=None):
 # Looks of a layer: the road plan at first; by class, by status, by confidence and by uncertainty to switch to.
 
 LINE_WIDTH = 0.7  # mm
+LANGUAGE = "lanewright/language"  # custom property of a layer, kept with its style: the language of legend and columns
 
 
 def load_look(layer, qml):
@@ -292,16 +328,31 @@ def load_look(layer, qml):
     document = QDomDocument()
     document.setContent(Path(qml).read_text(encoding="utf-8"))
     layer.importNamedStyle(document)
-    if not isinstance(layer, QgsVectorLayer):
-        return
+    _say_legend(layer)
+
+
+def _say_legend(layer):
     renderer = layer.renderer()
     if isinstance(renderer, QgsCategorizedSymbolRenderer):
         for number, category in enumerate(renderer.categories()):
-            renderer.updateCategoryLabel(number, tr(category.label()))
+            renderer.updateCategoryLabel(number, retold(category.label()))
     elif isinstance(renderer, QgsRuleBasedRenderer):
         for rule in renderer.rootRule().descendants():
-            rule.setLabel(tr(rule.label()))
+            rule.setLabel(retold(rule.label()))
+    layer.setCustomProperty(LANGUAGE, language())
     layer.rendererChanged.emit()  # a layer tree that shows the layer already reads its legend again
+
+
+def say_in_users_language(layers: Sequence[QgsMapLayer]) -> None:
+    """Let legends, columns and titles of those layers that are ours speak the user's language, whoever made them; symbols stay as they are."""
+    for layer in layers:
+        output = output_of(layer) if isinstance(layer, QgsVectorLayer) and layer.customProperty(LANGUAGE) != language() else ""
+        if output in LOOKS:
+            _say_legend(layer)
+            explain_attributes(layer, output, MAP_LAYERS[output].schema if output in MAP_LAYERS else ())
+            if output == "MARKINGS":
+                _name_figures(layer)
+            add_ready_styles(layer, STYLES / f"{LOOKS[output][0]}.qml")
 
 
 def add_ready_styles(layer: QgsVectorLayer, qml: str) -> None:
@@ -355,7 +406,8 @@ def _symbol(layer, colour):
 # Styles that travel with a result, so that a file made without a window opens styled anywhere.
 
 NAME = "default"
-POSTGIS = "postgres://"
+PROVIDER = "postgres"   # of QGIS, for tables of PostGIS
+POSTGIS = f"{PROVIDER}://"
 
 
 def embed_style(name, dest, title, schema=(), provenance=None):
@@ -367,7 +419,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
     look, _ = LOOKS.get(name, (None, None))
     qml = STYLES / f"{look}.qml"
     if dest.startswith(POSTGIS):
-        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, "postgres"), title, qml, schema, name, provenance)
+        _in_the_database(QgsVectorLayer(dest.removeprefix(POSTGIS), title, PROVIDER), title, qml, schema, name, provenance)
     if path is None or look is None or not qml.exists():
         return
     if path.suffix.lower() in (".tif", ".tiff") and (layer := QgsRasterLayer(str(path), path.stem)).isValid():
@@ -380,7 +432,7 @@ def embed_style(name, dest, title, schema=(), provenance=None):
 def _in_the_database(layer, title, qml, schema, output, provenance):
     if not layer.isValid():
         return
-    if provenance is not None and layer.providerType() == "postgres":
+    if provenance is not None and layer.providerType() == PROVIDER:
         _comment_on_table(layer, "\n".join(provenance.history(output)))
     elif provenance is not None:
         describe_origin(layer, provenance, output)
@@ -400,7 +452,7 @@ def _comment_on_table(layer, text):
     uri = QgsDataSourceUri(layer.source())
     name, quoted = uri.quotedTablename(), text.replace("'", "''")
     try:
-        connection = QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(uri.connectionInfo(True), {})
+        connection = QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(uri.connectionInfo(True), {})
         connection.executeSql(f"COMMENT ON TABLE {name} IS '{quoted}'")
     except QgsProviderConnectionException as problem:
         QgsApplication.messageLog().logMessage(str(problem), "Lanewright", Qgis.MessageLevel.Warning, False)

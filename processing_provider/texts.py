@@ -2,9 +2,9 @@
 
 from qgis.core import QgsApplication
 
-from ..algorithms.texts import numbers, speak, told, tr
+from ..algorithms.texts import numbers, retold, speak, told, tr
 
-__all__ = ["chosen_language", "numbers", "speak", "told", "tr"]
+__all__ = ["chosen_language", "numbers", "retold", "speak", "told", "tr"]
 
 
 def chosen_language():

@@ -134,10 +134,12 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   *(Field(f"{point}_{axis}", float, f"{point.upper()} {axis}", on_map=True) for point in ("pc", "pt", "pi") for axis in "xy"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
-CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
+CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take/seen)"),
+               Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
                STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
                Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
-               Field("other", str, "Second reading that is taken (JSON)")]
+               Field("other", str, "Second reading that is taken (JSON)"), Field("author", str, "Decided by"),
+               Field("decided_at", str, "Decided at (UTC)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen"),
                 Field("row", int, "Row of the report"), Field("places", int, "Places with the same finding")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
@@ -165,7 +167,8 @@ ROADSIDE_OBJECTS = [ROAD, SIDE, Field("kind", str, "Kind (pole/sign/trunk)"), ST
 # of the roads of other maps and of OpenStreetMap, which lanes may carry beside the fields of a survey
 ROAD_ATTRIBUTES = [Field("speed_kmh", float, "Speed limit (km/h)", needed=False), Field("name", str, "Name of the road", needed=False),
                    Field("ref", str, "Number of the road", needed=False), Field("surface", str, "Surface", needed=False),
-                   Field("lanes", int, "Lanes of the road", needed=False), Field("oneway", str, "One-way road (yes/no)", needed=False)]
+                   Field("lanes", int, "Lanes of the road", needed=False), Field("oneway", str, "One-way road (yes/no)", needed=False),
+                   Field("yields_to", str, "Lanes that go first, by lane_id", needed=False)]
 # the point of a signal is the middle of its lower edge, that of a pole its foot
 SIGNALS = [Field("kind", str, "Kind (traffic_light/sign/pole)"),
            *(Field(name, type_, alias, needed=False) for name, type_, alias in (

@@ -18,7 +18,8 @@ from ..markings.cross_section.weights import TakenReading
 from ..survey.frame.placement import LINE_VERTEX_SPACING
 from ..survey.frame.road_frame import RoadFrame
 
-ACTIONS = ("accept", "delete", "move", "draw", "take")
+ACTIONS = ("accept", "delete", "move", "draw", "take", "seen")
+SEEN = "seen"   # the action of a row that keeps a note of the review alone and asks for nothing
 TARGETS = ("edge", "marking", "lane")
 ACCEPTED, DRAWN = "accepted", "drawn"   # status of what an analyst confirmed, and of what an analyst drew
 
@@ -111,6 +112,8 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
         geometries = in_other_crs(geometries, source, survey)
     for number, (geometry, row) in enumerate(zip(geometries, features.rows), start=1):
         action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
+        if action == SEEN:
+            continue
         for name, value, allowed in (("action", action, ACTIONS), ("target", target, TARGETS)):
             if value not in allowed:
                 raise RoadExtractionError(f"Row {number} of the corrections has the {name} {value!r}; it must be one of {', '.join(allowed)}.")

@@ -30,12 +30,15 @@ from .asphalt_model import (
     to_level,
 )
 from .beams import Beams, phase_of_stretches
+from .scatter import ScannerScatter, scanner_scatter
 from .weights import ASPHALT
 
 # Saturated intensities: values that a scanner or an export cut off at an end of their range.
 
 MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
 SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
+PHOTOGRAPHED = ("Intensity was not corrected: neighbouring points are as alike as pixels of photographs, whose brightness does not depend on the "
+                "distance from the scanner.")
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
 
 
@@ -151,6 +154,7 @@ class AsphaltLook:
     points_by_scanner: np.ndarray = field(default_factory=lambda: np.zeros(SCANNER_NUMBERS, np.int64))   # (256,) points of each scanner
     counts: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))   # of the IntensityHistograms of raw intensities
     highest: int = 0   # intensity
+    scatter: ScannerScatter | None = None   # how single points scatter, None where nothing was looked at
 
     @classmethod
     def of(cls, road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
@@ -162,21 +166,31 @@ class AsphaltLook:
         points_by_scanner = road_points.points_of_scanners()
         scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
         beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.4))
-        step, before = _sampling_step(road_points), IntensityHistograms(scanners)
-        modelled = IntensityHistograms(scanners) if beams else before
-        # points without a position of the vehicle, and all points
-        without_vehicle, highest = np.zeros(2, np.int64), 0
-        arguments = list(frame.passes), beams, scanners, step
-        phase = phase_of_stretches(levels_of_stretch, road_points, arguments)
-        for raw, equal, brightest, lost in road_points.executor.run(phase, road_points.stretches(), progress.part(0.4, 1.0)):
-            before.add(raw, step)
-            modelled.add(equal, step)
-            without_vehicle += lost
-            highest = max(highest, brightest)
-        table = AsphaltTable.from_counts(modelled.counts)
+        step, scatter = _sampling_step(road_points), scanner_scatter(road_points)
+        counted = _levels(road_points, frame, beams, scanners, step)
+        (before, table, highest, reason), scattered = in_step([counted, scatter], road_points.executor, progress.part(0.4, 1.0))
         if table is not None and settings.scale != "automatic":
             table.logarithmic = settings.scale == "logarithmic"
-        return cls(table, _reason_of_counts(table, *without_vehicle.tolist()), beams, step, points_by_scanner, before.counts, highest)
+        if 2 * points_by_scanner[scattered.photographed].sum() > points_by_scanner.sum():
+            reason = PHOTOGRAPHED
+        return cls(table, reason, beams, step, points_by_scanner, before.counts, highest, scattered)
+
+
+def _levels(road_points, frame, beams, scanners, step):
+    """The work that counts intensities: IntensityHistograms, AsphaltTable or None, the highest intensity, and why nothing can be corrected."""
+    before = IntensityHistograms(scanners)
+    modelled = IntensityHistograms(scanners) if beams else before
+
+    def take(result):
+        raw, equal, *others = result
+        before.add(raw, step)
+        modelled.add(equal, step)
+        return [others]
+
+    phase = phase_of_stretches(levels_of_stretch, road_points, (list(frame.passes), beams, scanners, step))
+    highest, lost = zip(*(yield Asked(phase, road_points.stretches(), 1.0, read=take)))
+    table = AsphaltTable.from_counts(modelled.counts)
+    return before, table, max(highest), _reason_of_counts(table, *np.sum(lost, axis=0).tolist())
 
 
 def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),

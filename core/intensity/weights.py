@@ -27,6 +27,14 @@ class _AsphaltWeights:
     enough_points_per_metre: int = 6_000   # of road: more do not improve the estimate of asphalt
     sample_stripe_length: int = 100   # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
     max_share_without_vehicle: float = 0.2   # of the points, whose vehicle position is unknown: beyond it nothing is corrected
+    # When a scanner is noisy.
+    noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
+    scatter_square: float = 1.0   # m
+    photographed: float = 0.75   # of the variance: neighbouring points differ less by brightness of photographs, by a scanner's twice as much
+    pixel: int = 400   # units of 0.1 mm: points that lie in one such square are neighbours
+    min_square_points: int = 30   # points of one scanner
+    min_neighbours: int = 5   # pairs of points in one pixel of a square
+    min_scanner_points: int = 500   # in squares, below which the scatter of a scanner is unknown
 
 
 ASPHALT = _AsphaltWeights()

@@ -46,13 +46,6 @@ class _AsphaltWeights:
     paint_level: float = 2.0   # times the usual brightness of asphalt: a bin whose median is beyond that is one of paint
     histogram_limits: tuple[float, float] = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
     rim_width: float = 0.60   # m from the rim of the road: gutters; asphalt is taken from the cells inside
-    # When a scanner is noisy.
-    noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
-    scatter_square: float = 1.0   # m
-    photographed: float = 0.75   # of the variance: neighbouring points differ less by brightness of photographs, by a scanner's twice as much
-    min_square_points: int = 30   # points of one scanner
-    min_neighbours: int = 5   # pairs of points in one cell of a square
-    min_scanner_points: int = 500   # in squares, below which the scatter of a scanner is unknown
 
 
 ASPHALT = _AsphaltWeights()

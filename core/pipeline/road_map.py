@@ -39,7 +39,7 @@ from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
-from ..markings.paint.extract import extract_markings, scanner_scatter
+from ..markings.paint.extract import extract_markings
 from ..markings.paint.settings import MarkingSettings
 from ..road.common.curb_limits import CurbSettings
 from ..road.common.curb_points import CurbPoints
@@ -234,7 +234,8 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     frame = result.frame
     pieces = scatter = None
     if settings.correct:
-        (result.road_points, result.intensity_report), pieces, scatter = stages.run(
+        scatter = asphalt.scatter
+        (result.road_points, result.intensity_report), pieces = stages.run(
             "intensity", "Correcting intensity …", _corrected, result.road_points, frame, settings.image, asphalt, depends=settings.image)
     # without what they keep of the intensities they take a quarter less memory for the image
     executor.forget()
@@ -286,8 +287,8 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
 
 
 def _corrected(road_points, frame, settings, asphalt, progress):
-    """What `correct_intensity` gives, and what the stages after it look for in points as they are, in one phase: pieces of image, and scatter."""
-    works = [intensity_corrected(road_points, frame, asphalt, progress), pieces_of_image(road_points, settings), scanner_scatter(road_points)]
+    """What `correct_intensity` gives, and the pieces of image that are looked for in the same points, in one phase."""
+    works = [intensity_corrected(road_points, frame, asphalt, progress), pieces_of_image(road_points, settings)]
     return in_step(works, road_points.executor, progress)
 
 

@@ -34,6 +34,7 @@ from ...algorithms.destinations import package_and_table, table_of
 from ...algorithms.survey_input import SUFFIXES, VIRTUAL, cloud_files, survey_name
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.road_maps import last_run
+from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
 from ..review.corrections_layer import SURVEY, corrections_layers
 from ..survey_widgets import trajectory_beside
@@ -324,7 +325,6 @@ class BatchAlgorithmDialog(_OnePlaceForAll, qgis_batch.BatchAlgorithmDialog):
 
 # Where the results of an algorithm go when they all go to one place: a folder, or PostGIS, whose connection and schema a dialog asks for.
 
-PROVIDER = "postgres"
 GEOMETRY = "geom"
 WITH_GEOMETRY = (Qgis.ProcessingSourceType.VectorPoint, Qgis.ProcessingSourceType.VectorLine, Qgis.ProcessingSourceType.VectorPolygon)
 

@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 
 from qgis.core import (
     NULL,
     Qgis,
+    QgsApplication,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
+    QgsDataSourceUri,
     QgsFeature,
     QgsGeometry,
     QgsProject,
+    QgsProviderRegistry,
     QgsRectangle,
     QgsSpatialIndex,
-    QgsVectorFileWriter,
+    QgsUnitTypes,
     QgsVectorLayer,
+    QgsVectorLayerExporter,
 )
+from qgis.PyQt.QtWidgets import QFileDialog, QWidget
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CORRECTIONS, OTHER
+from ...core.corrections.corrections import SEEN, TARGETS
 from ...processing_provider.call import qgis_fields
-from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to
-from ...processing_provider.styling import STYLES, apply_style, explain_readings
+from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to, clouds_of
+from ...processing_provider.styling import PROVIDER, STYLES, apply_style, explain_readings
 from ...processing_provider.texts import tr
+from ..widgets import say
 from .doubtful import DoubtfulPiece
 
 NAME = "CORRECTIONS"
@@ -33,6 +40,9 @@ TABLE = "corrections"
 NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
 SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
 CHANGED = "lanewright/changed/"      # custom property of the layer, with what the corrections are about: when one was made or taken back last
+UNMADE = "lanewright/unmade"         # custom property of the layer: xmin,ymin,xmax,ymax of what changed and that no run has made, one a line
+WRITTEN = "lanewright/written"       # custom property of the layer: numbers of the rows that were written here, one a line; others are of colleagues
+FILE = "corrections.gpkg"
 MOVED = 2.0        # m that a piece is moved at most
 SAME_PLACE = 0.1   # m between two lines of which one is taken for the other
 
@@ -41,6 +51,42 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
     """The layers of corrections in a project, from above: made here, or dropped in."""
     layers = [node.layer() for node in project.layerTreeRoot().findLayers() if isinstance(node.layer(), QgsVectorLayer)]
     return [layer for layer in layers if NEEDED <= {field.name() for field in layer.fields()}]
+
+
+def layer_of(road_map: RoadMap | None) -> QgsVectorLayer | None:
+    """The layer that corrections of a road map go to, None before the first."""
+    vectors = [] if road_map is None else road_map.vectors
+    return corrections_of_survey(QgsProject.instance(), road_map.survey, vectors[0].extent(), vectors[0].crs()) if vectors else None
+
+
+def ask_for_file(parent: QWidget, road_map: RoadMap | None, title: str, name: str, kind: str) -> str:
+    """The file that the user names, "" for none; offered is a name beside the project or the point clouds."""
+    clouds = [] if road_map is None else clouds_of(road_map, QgsProject.instance())[0]
+    folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
+    options = QFileDialog.Option.DontConfirmOverwrite if name == FILE else QFileDialog.Option(0)
+    path, _ = QFileDialog.getSaveFileName(parent, title, str(folder / name), kind, options=options)
+    suffix = Path(name).suffix
+    return path if not path or path.lower().endswith(suffix) else f"{path}{suffix}"
+
+
+def ask_for_corrections(parent: QWidget, road_map: RoadMap | None) -> str:
+    """Where the corrections are to be kept; "" where the user gave up."""
+    return ask_for_file(parent, road_map, tr("File for the corrections"), FILE, "GeoPackage (*.gpkg)")
+
+
+def layer_to_write(iface, road_map: RoadMap, ask: Callable[[], str]) -> QgsVectorLayer | None:
+    """The layer that corrections of a road map go to, made where there is none; None where `ask` names no file, or none that can be written."""
+    if (layer := layer_of(road_map)) is not None:
+        lay_above(layer, road_map, QgsProject.instance())
+        return layer
+    place = place_beside(road_map) or ask()
+    if not place:
+        return None
+    try:
+        return new_corrections_layer(QgsProject.instance(), place, road_map.vectors[0].crs(), road_map.survey)
+    except RoadExtractionError as problem:
+        say(iface, str(problem), Qgis.MessageLevel.Warning)
+        return None
 
 
 def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
@@ -60,25 +106,44 @@ def _placed(line, crs, layer):
     return placed
 
 
-def new_corrections_layer(project: QgsProject, path: str, crs: QgsCoordinateReferenceSystem, survey: str = "") -> QgsVectorLayer:
-    """A layer of corrections above all others, in a GeoPackage; one that is there already is taken up again.
+def place_beside(road_map: RoadMap) -> str:
+    """The table of PostGIS, beside those of a road map, in which all who review that map keep their corrections; "" for a map of files."""
+    layer = road_map.vectors[0]
+    if layer.providerType() != PROVIDER:
+        return ""
+    uri, output = QgsDataSourceUri(layer.source()), road_map.outputs[road_map.layers.index(layer)].lower()
+    table = f"{uri.table().removesuffix(output)}{TABLE}" if uri.table().endswith(output) else TABLE
+    place = QgsDataSourceUri(uri.connectionInfo(False))
+    place.setDataSource(uri.schema(), table, "geom", "", "id")
+    return place.uri(False)
 
-    Raises RoadExtractionError if the file cannot be written, or is another layer.
+
+def place_of(layer: QgsVectorLayer) -> str:
+    """Name of the file, or schema and table, that a layer lies in."""
+    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+    return Path(parts["path"]).name if parts.get("path") else f"{parts.get('schema')}.{parts.get('table')}"
+
+
+def new_corrections_layer(project: QgsProject, place: str, crs: QgsCoordinateReferenceSystem, survey: str = "") -> QgsVectorLayer:
+    """A layer of corrections above all others, in a GeoPackage or a table of PostGIS; one that is there already is taken up again.
+
+    place : path of the file, or as of `place_beside`
+    Raises RoadExtractionError if it cannot be written, or is another layer.
     """
-    if not Path(path).exists():
-        options = QgsVectorFileWriter.SaveVectorOptions()
-        options.driverName, options.layerName = "GPKG", TABLE
-        writer = QgsVectorFileWriter.create(path, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineString, crs,
-                                            project.transformContext(), options)
-        problem = writer.errorMessage()
-        del writer  # writes what it has
+    in_file = "table=" not in place
+    source, provider = (f"{place}|layername={TABLE}", "ogr") if in_file else (place, PROVIDER)
+    layer = QgsVectorLayer(source, tr("Corrections"), provider)
+    if not layer.isValid() and not (in_file and Path(place).exists()):
+        exporter = QgsVectorLayerExporter(place, provider, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineStringZ, crs, False,
+                                          {"driverName": "GPKG", "layerName": TABLE} if in_file else {})
+        problem = exporter.errorMessage()
+        del exporter  # writes what it has
         if problem:
             raise RoadExtractionError(
-                tr("The corrections cannot be kept in {path}: {problem}. Choose another place.").format(path=path, problem=problem))
-    layer = QgsVectorLayer(f"{path}|layername={TABLE}", tr("Corrections"), "ogr")
-    names = {field.name() for field in layer.fields()} if layer.isValid() else set()
-    if not NEEDED <= names:
-        raise RoadExtractionError(tr("{path} holds no layer of corrections. Choose a new name.").format(path=path))
+                tr("The corrections cannot be kept in {path}: {problem}. Choose another place.").format(path=place, problem=problem))
+        layer = QgsVectorLayer(source, tr("Corrections"), provider)
+    if not NEEDED <= {field.name() for field in layer.fields()}:
+        raise RoadExtractionError(tr("{path} holds no layer of corrections. Choose a new name.").format(path=place))
     apply_style(layer, STYLES / "corrections.qml", CORRECTIONS, NAME)
     layer.setCustomProperty(OUTPUT, NAME)
     layer.setCustomProperty(SURVEY, survey)
@@ -103,9 +168,11 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
 
     former : an earlier decision about the same piece, which makes room for it; without, one of the same target at the same place does
     """
-    _note_change(layer, values["target"])
     placed = _placed(line, crs, layer)
+    note_change(layer, values, placed)
     former = former or correction_at(layer, line, crs, str(values["target"]))
+    values |= {"author": QgsApplication.userFullName() or QgsApplication.userLoginName(),
+               "decided_at": f"{datetime.now(timezone.utc):%Y-%m-%d %H:%M:%S}"}
     lacking = [column for column in CORRECTIONS if column.name in values and layer.fields().lookupField(column.name) < 0]
     if lacking:  # a layer of an earlier version
         layer.dataProvider().addAttributes(list(qgis_fields(lacking, with_aliases=False)))
@@ -113,14 +180,19 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
     feature = QgsFeature(layer.fields())
     feature.setGeometry(placed)
     for name, value in values.items():
-        feature[name] = NULL if value is None else value
-    if former is not None:
-        _delete(layer, [former.id()])
+        if layer.fields().lookupField(name) >= 0:
+            feature[name] = NULL if value is None else value
     if layer.isEditable():
         layer.addFeature(feature)
     else:
-        _, (feature,) = layer.dataProvider().addFeatures([feature])
+        fine, (feature,) = layer.dataProvider().addFeatures([feature])
+        if not fine:
+            raise RoadExtractionError(tr("The correction was not kept in {place}: {problem}").format(
+                place=place_of(layer), problem=layer.dataProvider().lastError()))
         layer.updateExtents()
+    if former is not None:
+        _delete(layer, [former.id()])
+    note_written(layer, [feature])
     if values.get(OTHER.name):
         explain_readings(layer)
     layer.triggerRepaint()
@@ -147,26 +219,73 @@ def corrections_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece]
         line.transform(QgsCoordinateTransform(layer.crs(), crs, QgsProject.instance()))
         for number in index.intersects(line.boundingBox().buffered(MOVED)):
             piece, begins = pieces[number], (feature["road"], feature["station_m"])
-            if feature["target"] == piece.target and (line.hausdorffDistance(piece.line) < SAME_PLACE or (
+            is_of_kind = feature["target"] == (piece.target or piece.kind) and (feature["action"] == SEEN) == (not piece.target)
+            if is_of_kind and (line.hausdorffDistance(piece.line) < SAME_PLACE or (
                     feature["action"] == "move" and NULL not in begins and begins[0] == piece.road
                     and abs(begins[1] - piece.station) < SAME_PLACE and line.distance(piece.line) < MOVED)):
                 made[number] = feature
     return made
 
 
-def take_back(layer: QgsVectorLayer) -> bool:
-    """Delete the correction that was made last; False where there is none."""
-    ids = layer.allFeatureIds()
-    if not ids:
+def review_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece], crs: QgsCoordinateReferenceSystem) -> tuple[list, list]:
+    """What was decided, and the pieces that are left, as `review_report` wants them."""
+    made, decided = corrections_of(layer, pieces, crs), []
+    for row in layer.getFeatures() if layer is not None else ():
+        metres = QgsUnitTypes.fromUnitToUnitFactor(layer.crs().mapUnits(), Qgis.DistanceUnit.Meters)
+        words = [str(row.attributeMap().get(name) or "") for name in ("target", "action", "author", "decided_at")]
+        decided.append((*words, row.geometry().length() * metres))
+    left = sorted((piece for number, piece in enumerate(pieces) if number not in made), key=lambda piece: -piece.doubt)
+    return decided, [(piece.target or piece.kind, piece.road, piece.station, piece.length, piece.doubt, piece.text) for piece in left]
+
+
+def take_back(layer: QgsVectorLayer, feature: QgsFeature | None = None) -> bool:
+    """Delete a correction, without one that which was made here last; False where there is none. Those of colleagues stay."""
+    ids = written_here(layer)
+    if feature is None and not ids:
         return False
-    _note_change(layer, layer.getFeature(max(ids))["target"])
-    _delete(layer, [max(ids)])
+    feature = feature or layer.getFeature(ids[-1])
+    note_change(layer, feature, feature.geometry())
+    _delete(layer, [feature.id()])
     layer.triggerRepaint()
     return True
 
 
-def _note_change(layer, target):
-    layer.setCustomProperty(f"{CHANGED}{target}", datetime.now(timezone.utc).isoformat())
+def written_here(layer: QgsVectorLayer) -> list[int]:
+    """Numbers of the rows that were written in this project and are still there, in that order."""
+    there = set(layer.allFeatureIds())
+    return [number for number in map(int, layer.customProperty(WRITTEN) or ()) if number in there]
+
+
+def note_written(layer: QgsVectorLayer, rows: Iterable[QgsFeature]) -> None:
+    """Note that rows were written in this project."""
+    layer.setCustomProperty(WRITTEN, [*written_here(layer), *(row.id() for row in rows)])
+
+
+def note_change(layer: QgsVectorLayer, row: QgsFeature | dict[str, object], where: QgsGeometry) -> None:
+    """Note that a correction has changed: what was made with it before no longer holds there."""
+    if row["action"] != SEEN:
+        layer.setCustomProperty(f"{CHANGED}{row['target']}", datetime.now(timezone.utc).isoformat())
+        box = where.boundingBox()
+        layer.setCustomProperty(UNMADE, "\n".join([*filter(None, unmade(layer)), ",".join(
+            f"{value:.9g}" for value in (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))]))
+
+
+def unmade(layer: QgsVectorLayer) -> list[str]:
+    """Extents of what has changed and that no run has made, as `UNMADE` has them."""
+    return str(layer.customProperty(UNMADE) or "").split("\n")
+
+
+def changes_of(layer: QgsVectorLayer) -> dict[str, object]:
+    """What has changed so far and when, for `note_made`."""
+    return {key: layer.customProperty(key) for key in (UNMADE, *(f"{CHANGED}{target}" for target in TARGETS))}
+
+
+def note_made(layer: QgsVectorLayer, before: dict[str, object]) -> None:
+    """Note that a run has made all that had changed `before` it began; what changed meanwhile counts as changed now, for the next run."""
+    layer.setCustomProperty(UNMADE, "\n".join(unmade(layer)[len(str(before.pop(UNMADE) or "").split("\n")):]))
+    for key, when in before.items():
+        if layer.customProperty(key) != when:
+            layer.setCustomProperty(key, datetime.now(timezone.utc).isoformat())
 
 
 def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | None:
@@ -177,7 +296,8 @@ def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | N
     noted = layer.customProperty(f"{CHANGED}{target}")
     if noted:
         return datetime.fromisoformat(str(noted))
-    return datetime.now(timezone.utc) if unmade and any(row["target"] == target for row in layer.getFeatures()) else None
+    return datetime.now(timezone.utc) if unmade and any(
+        row["target"] == target and row["action"] != SEEN for row in layer.getFeatures()) else None
 
 
 def _delete(layer, ids):

@@ -8,7 +8,7 @@ from pathlib import Path
 from textwrap import shorten
 
 from qgis import utils
-from qgis.core import Qgis, QgsGeometry, QgsPointXY, QgsProject, QgsTask, QgsVectorLayer
+from qgis.core import Qgis, QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsSettings, QgsTask, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsMapToolEmitPoint, QgsRubberBand
 from qgis.PyQt.QtCore import Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QColor, QKeyEvent, QKeySequence
@@ -16,25 +16,41 @@ from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
     QDockWidget,
-    QFileDialog,
+    QDoubleSpinBox,
     QLabel,
     QLineEdit,
     QListWidget,
     QListWidgetItem,
     QMenu,
+    QMessageBox,
     QTabWidget,
     QWidget,
 )
 
 from ...core.common.errors import RoadExtractionError
-from ...core.corrections.corrections import taken_reading
-from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
+from ...core.corrections.corrections import SEEN, taken_reading
+from ...processing_provider.results.road_maps import RoadMap, Setting, road_maps
 from ...processing_provider.styling import WORDS
 from ...processing_provider.texts import tr
-from ..widgets import button, choices, column, give_map_back, row, say, show_extent, take_map, wrapped
-from .corrections_layer import add_correction, corrections_of, corrections_of_survey, lay_above, new_corrections_layer, take_back
+from ...products.report.review import review_report
+from ..widgets import button, choices, column, give_map_back, open_file, row, say, show_extent, take_map, wrapped
+from .corrections_layer import (
+    add_correction,
+    ask_for_corrections,
+    ask_for_file,
+    corrections_of,
+    layer_of,
+    layer_to_write,
+    note_change,
+    note_written,
+    place_of,
+    review_of,
+    take_back,
+    written_here,
+)
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
+from .remaking import Remaking
 from .smart_pick import evidence, pick, prepare, snap
 from .steps import STALE, StepsPanel, steps_of
 
@@ -42,19 +58,20 @@ ARRIVED = 700   # ms after the last layer of a run that came into the project
 LONG_PLACE = 80.0   # m: of a longer place the map shows the selected piece alone, or it would be too small to judge
 MOST_LETTERS = 200   # of what is doubtful in the list; pointing at it shows all of it
 LEAST_VIEW = 30.0   # m of ground shown about a place
-FILE = "corrections.gpkg"
 CHOSEN = "#6eff00c8"  # pieces that the buttons are about
-SEEN = "lanewright/seen"  # custom property of a layer: keys of pieces that were accepted and that no correction could be about, one a line
+AT_ONCE = Setting("made_at_once")
+KIND, LENGTH = "lanewright/doubts/kind", "lanewright/doubts/shortest"   # settings: what is gone through
 
 
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
     Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
-    Where the map is made again while the window is open, the window goes on in the new one.
+    Where the map is made again while the window is open, the window goes on in the new one, which `made_again` has.
     """
 
     shown = pyqtSignal(object)
+    made_again = pyqtSignal(object)
     run_wanted = pyqtSignal(object, object)
     stage_wanted = pyqtSignal(str, dict)
 
@@ -62,7 +79,7 @@ class DoubtDock(QDockWidget):
         super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
         self.iface = iface
         self.places: list[Doubt] = []
-        self.decided: dict[int, str] = {}   # id of a piece: what was decided about it and not yet run
+        self.made: dict[int, QgsFeature] = {}   # id of a piece: the correction that was made of it and not yet run
         self.at = -1
         self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
@@ -91,6 +108,11 @@ class DoubtDock(QDockWidget):
         self.kinds = choices(((tr("Everything"), ""), (tr("Road edges"), "edge"), (tr("Road surface"), "surface"), (tr("Marking lines"), "marking"),
                               (tr("Lanes"), "lane"), (tr("Warnings"), "warning")), self._begin_again)
         self.order = choices(((tr("The most doubtful first"), True), (tr("Along the road"), False)), self._begin_again)
+        settings = QgsSettings()
+        self.kinds.setCurrentIndex(max(self.kinds.findData(settings.value(KIND, "")), 0))
+        self.shortest = QDoubleSpinBox(prefix=tr("From "), suffix=" m", decimals=0, maximum=999.0, value=settings.value(LENGTH, 0.0, type=float),
+                                       keyboardTracking=False, toolTip=tr("Shorter pieces are passed over, but not warnings and ends of lanes"))
+        self.shortest.valueChanged.connect(lambda metres: self._begin_again())
         self.undecided = QCheckBox(tr("Only what is not done"))
         self.list = QListWidget(
             wordWrap=True, selectionMode=QAbstractItemView.SelectionMode.ExtendedSelection, itemSelectionChanged=self._selected,
@@ -115,11 +137,17 @@ class DoubtDock(QDockWidget):
         self.hint = QLabel(wordWrap=True, styleSheet="background: #fff3c4; color: #222222; padding: 4px", visible=False)
         self.kept = wrapped()
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
-        self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
-                                       lambda: self.run_wanted.emit(self.road_map, self.layer))
-        body = column(QWidget(), row(back, ahead, self.where), row(self.kinds, self.order), self.undecided, (self.list, 1), self.photo,
-                      row(self.accept_button, self.delete_button, self.move_button, self.other_button),
-                      row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, self.kept, row(self.undo_button, self.run_button))
+        self.vertex_button = self._button(tr("Vertices"), tr("Drag the vertices of corrections with QGIS's tool; once more keeps them"),
+                                          self.drag_vertices, "V")
+        self.run_button = self._button(tr("Make again"), tr("Makes the map again with the corrections, while you go on"), self.make_again, "R")
+        self.at_once = QCheckBox(tr("At once"), toolTip=tr("After every correction"), checked=AT_ONCE.holds(), toggled=AT_ONCE.keep)
+        self.remaking = Remaking(self.iface)
+        self.report_button = self._button(tr("Report…"), tr("A page with what was decided, by kind and by person, and what is left"),
+                                          self.write_report)
+        body = column(QWidget(), row(back, ahead, self.where), row(self.kinds, self.order), row(self.undecided, self.shortest), (self.list, 1),
+                      self.photo, row(self.accept_button, self.delete_button, self.move_button, self.other_button),
+                      row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, row(self.kept, self.report_button),
+                      row(self.undo_button, self.vertex_button, self.run_button, self.at_once), self.remaking)
         self.steps = StepsPanel()
         self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
         self.steps.stage_wanted.connect(self.stage_wanted)
@@ -145,6 +173,7 @@ class DoubtDock(QDockWidget):
         self._stop_drawing()
         self._unlight()
         self._stop_looking()
+        self.remaking.forget()
         self.iface.removeDockWidget(self)
 
     def _forget(self, removed):
@@ -168,13 +197,12 @@ class DoubtDock(QDockWidget):
         survey, place = self.left if self.road_map is None else (self.road_map.survey, self.place)
         newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
-            self._stop_drawing()
             self._of = None
             self._take(newer)
             if place is not None and self.places:
                 self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
                 self.seen = self.place
-                self.shown.emit(self.seen)
+            self.made_again.emit(newer)
             self._fill()
             if not self.isHidden():
                 self._come_to_front()
@@ -229,8 +257,10 @@ class DoubtDock(QDockWidget):
         self._look_at(again=True)
 
     def _list_places(self):
-        kind = self.kinds.currentData()
-        doubts = doubts_of(self.road_map, [kind] if kind else [])
+        kind, shortest = self.kinds.currentData(), self.shortest.value()
+        QgsSettings().setValue(KIND, kind)
+        QgsSettings().setValue(LENGTH, shortest)
+        doubts = doubts_of(self.road_map, [kind] if kind else [], shortest)
         self.places, self.at = sorted(doubts, key=lambda place: -place.doubt) if self.order.currentData() else doubts, -1
         self._note_decisions()
 
@@ -269,20 +299,30 @@ class DoubtDock(QDockWidget):
         """Look up what was decided, of all places at once: the corrections are many, and so are the pieces."""
         pieces = [piece for place in self.places for piece in place.pieces]
         made = corrections_of(self.layer, pieces, self.places[0].crs) if pieces else {}
-        seen = self._seen() if pieces else []
-        self.decided = {id(piece): str(WORDS["action"]["accept"]) for piece in pieces if not piece.target and piece.key in seen}
-        self.decided |= {id(pieces[number]): str(WORDS["action"].get(row["action"], row["action"])) for number, row in made.items()}
+        self.made = {id(pieces[number]): row for number, row in made.items()}
 
     def _decision(self, piece):
-        """What was decided about a piece and not yet run; "" for nothing."""
-        return self.decided.get(id(piece), "")
+        """What was decided about a piece and not yet run, by whom where that was a colleague; "" for nothing."""
+        row = self.made.get(id(piece))
+        if row is None:
+            return ""
+        text, author = str(WORDS["action"].get(row["action"], row["action"])), row.attributeMap().get("author") or ""
+        return text if row.id() in written_here(self.layer) or not author else f"{text} ({author})"
 
-    def _former(self, piece):
-        """The correction that was made of a piece, None where there is none."""
-        return corrections_of(self.layer, [piece], self.places[0].crs).get(0)
+    def _may_replace(self, pieces):
+        """Whether the decisions about pieces are those that the list shows; where a colleague has made others since, the user says what holds."""
+        shown = {id(piece): self.made.get(id(piece)) for piece in pieces}
+        self._note_decisions()
+        changed = [f"{shorten(piece.text, MOST_LETTERS)}\n  → {self._decision(piece) or tr('taken back')}"
+                   for piece in pieces if self.made.get(id(piece)) != shown[id(piece)]]
+        if not changed or self.ask(tr("This was decided otherwise meanwhile:\n\n{changes}\n\nShall your decision take its place?").format(
+                changes="\n".join(changed))):
+            return True
+        return False
 
-    def _seen(self):
-        return str(self.road_map.layers[0].customProperty(SEEN) or "").split("\n")
+    def ask(self, question: str) -> bool:
+        """The user's yes or no."""
+        return QMessageBox.question(self, tr("Doubtful places"), question) == QMessageBox.StandardButton.Yes
 
     def _look_at(self, again=False):
         """Let map, section and photo show the place; of a long one, the piece that is selected."""
@@ -335,49 +375,37 @@ class DoubtDock(QDockWidget):
     @property
     def layer(self) -> QgsVectorLayer | None:
         """The layer that corrections of this survey go to, None before the first."""
-        vectors = [] if self.road_map is None else self.road_map.vectors
-        if not vectors:
-            return None
-        return corrections_of_survey(QgsProject.instance(), self.road_map.survey, vectors[0].extent(), vectors[0].crs())
+        return layer_of(self.road_map)
 
     def ask_for_file(self) -> str:
         """Where the corrections are to be kept; "" where the user gave up."""
-        clouds = [] if self.road_map is None else clouds_of(self.road_map, QgsProject.instance())[0]
-        folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
-        path, _ = QFileDialog.getSaveFileName(self, tr("File for the corrections"), str(folder / FILE), "GeoPackage (*.gpkg)",
-                                              options=QFileDialog.Option.DontConfirmOverwrite)
-        return path if not path or path.lower().endswith(".gpkg") else f"{path}.gpkg"
+        return ask_for_corrections(self, self.road_map)
 
     def _layer_to_write(self):
-        if (layer := self.layer) is not None:
-            lay_above(layer, self.road_map, QgsProject.instance())
-            return layer
-        path = self.ask_for_file()
-        if not path:
-            return None
-        try:
-            return new_corrections_layer(QgsProject.instance(), path, self.road_map.vectors[0].crs(), self.road_map.survey)
-        except RoadExtractionError as problem:
-            say(self.iface, str(problem), Qgis.MessageLevel.Warning)
-            return None
+        return layer_to_write(self.iface, self.road_map, self.ask_for_file)
 
     def decide(self, action: str) -> None:
         """Accept or delete what is selected or take its other reading, and go on to the next piece that is not decided, here or at the next place."""
         pieces, place = self.chosen, self.place
-        to_write = [piece for piece in pieces if piece.target]
-        layer = self._layer_to_write() if to_write else None
-        if not pieces or to_write and layer is None:
+        if not pieces or (layer := self._layer_to_write()) is None:
             return
-        for piece in to_write:
+        if not self._may_replace(pieces):
+            self._fill(max(self.list.currentRow(), 0))
+            return
+        for piece in pieces:
             reading = taken_reading({"other": piece.other}, piece.target) or {} if action == "take" else {}
-            add_correction(layer, piece.line, place.crs, self._former(piece), **{
-                "action": action, "target": piece.target, "road": piece.road, "station_m": piece.station, "offset_m": piece.offset,
-                "note": self.note.text() or None, **reading})
-        keys = [piece.key for piece in pieces if not piece.target]
-        if keys:
-            self.road_map.layers[0].setCustomProperty(SEEN, "\n".join([*filter(None, self._seen()), *keys]))
+            self._write(layer, piece.line, place.crs, self.made.get(id(piece)), **{
+                "action": action if piece.target else SEEN, "target": piece.target or piece.kind, "road": piece.road, "station_m": piece.station,
+                "offset_m": piece.offset, "note": self.note.text() or None, **reading})
         self.note.clear()
+        self.corrected()
         self._go_on(max(place.pieces.index(piece) for piece in pieces))
+
+    def _write(self, *row, **values):
+        try:
+            add_correction(*row, **values)
+        except RoadExtractionError as problem:
+            say(self.iface, str(problem), Qgis.MessageLevel.Critical)
 
     def _go_on(self, last):
         """To the next piece that is not decided, after the row that was decided last, here or at the next place."""
@@ -426,16 +454,17 @@ class DoubtDock(QDockWidget):
     def _keep(self, action, target, piece, line, crs, seen=None):
         """Write what was drawn, moved or found, and go on."""
         layer = self._layer_to_write()
-        if layer is not None:
+        if layer is not None and self._may_replace([] if piece is None else [piece]):
             location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
             pattern = {"pattern": "dashed" if seen.dashed else "solid"} if seen is not None and target == "marking" and action == "draw" else {}
-            add_correction(layer, line, crs, None if piece is None else self._former(piece), action=action, target=target,
+            self._write(layer, line, crs, self.made.get(id(piece)), action=action, target=target,
                            note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **pattern)
             self.note.clear()
-        if piece is not None and layer is not None and self.place is not None and piece in self.place.pieces:
-            self._go_on(self.place.pieces.index(piece))
-        else:
-            self._fill(max(self.list.currentRow(), 0))
+            self.corrected()
+            if piece is not None and self.place is not None and piece in self.place.pieces:
+                self._go_on(self.place.pieces.index(piece))
+                return
+        self._fill(max(self.list.currentRow(), 0))
 
     # -- what the points show ---------------------------------------------------------------------
 
@@ -493,19 +522,72 @@ class DoubtDock(QDockWidget):
     def undo(self) -> None:
         """Take back the correction that was made last."""
         if self.layer is not None and take_back(self.layer):
-            self._fill()
+            self.corrected()
+
+    def drag_vertices(self) -> None:
+        """Take up QGIS's vertex tool on the corrections; where it is taken up already, keep what was dragged."""
+        layer = self.layer
+        if layer.isEditable():
+            layer.commitChanges()
+            self.iface.actionPan().trigger()
+            self.corrected()
+            return
+        moved = partial(self._note_vertex, layer)
+
+        def added(name, rows):
+            note_written(layer, rows)   # what is saved has other numbers
+
+        def ended():
+            layer.geometryChanged.disconnect(moved)
+            layer.committedFeaturesAdded.disconnect(added)
+            layer.editingStopped.disconnect(ended)
+            self.hint.hide()
+
+        layer.geometryChanged.connect(moved)
+        layer.committedFeaturesAdded.connect(added)
+        layer.editingStopped.connect(ended)
+        self.iface.setActiveLayer(layer)
+        layer.startEditing()
+        self.iface.actionVertexToolActiveLayer().trigger()
+        self._say(tr("Click a vertex and click where it belongs; Ctrl+Z takes it back. V keeps what was dragged."))
+
+    def _note_vertex(self, layer, number, geometry):
+        note_change(layer, layer.getFeature(number), geometry)
+        self._tell()
+
+    def make_again(self) -> None:
+        """Make the map again with its corrections, in the background."""
+        if self.layer is not None:
+            self.remaking.ask(self.road_map, self.layer)
+
+    def corrected(self) -> None:
+        """List what was corrected, and make it on wish."""
+        self._fill(max(self.list.currentRow(), 0))
+        if self.at_once.isChecked():
+            self.make_again()
+
+    def write_report(self) -> None:
+        """What was decided and what is left, as a page in the file that the user names, shown in the browser."""
+        path = ask_for_file(self, self.road_map, tr("Report of the review"), f"{tr('Review')} {self.road_map.survey}.html", "HTML (*.html)")
+        if path:
+            pieces = [piece for place in doubts_of(self.road_map) for piece in place.pieces]
+            Path(path).write_text(review_report(self.road_map.survey, "" if self.layer is None else place_of(self.layer), *review_of(
+                self.layer, pieces, self.road_map.vectors[0].crs())), encoding="utf-8")
+            open_file(self.iface, path)
 
     def _tell(self):
         """How many corrections there are, and what to do with them."""
         if self.tabs.currentWidget() is self.steps:
             self.steps.show_map(self.road_map, self.layer)
-        count = 0 if (layer := self.layer) is None else layer.featureCount()
-        self.undo_button.setEnabled(count > 0)
-        self.run_button.setEnabled(count > 0)
+        count = 0 if (layer := self.layer) is None else len(layer.allFeatureIds())   # asked of the database: a colleague adds to it
+        self.undo_button.setEnabled(count > 0 and bool(written_here(layer)))
+        self.vertex_button.setEnabled(count > 0)
+        self.report_button.setEnabled(self.road_map is not None)
+        self.run_button.setEnabled(layer is not None)
         waits = count and any(step.colour == STALE for step in steps_of(self.road_map, layer))
         text = tr("No corrections yet.") if not count else tr("Corrections in {file}: {count}. They come into the map when it is made again.") \
             if waits else tr("Corrections in {file}: {count}. They are in this map.")
-        self.kept.setText(text.format(count=count, file="" if layer is None else Path(layer.source().split("|")[0]).name))
+        self.kept.setText(text.format(count=count, file="" if layer is None else place_of(layer)))
 
 
 # A map tool that draws one line.

@@ -41,8 +41,11 @@ class Doubt:
         return sum(piece.doubt for piece in self.pieces)
 
 
-def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
-    """The doubtful places, of some kinds of DoubtfulPiece or of all, along the roads of a map; doubts that lie together are one."""
+def doubts_of(road_map: RoadMap, kinds: Iterable[str] = (), shortest: float = 0.0) -> list[Doubt]:
+    """The doubtful places, of some kinds of DoubtfulPiece or of all, along the roads of a map; doubts that lie together are one.
+
+    shortest : m; shorter pieces are left out, but not what has no length, such as the end of a lane
+    """
     rows = {output: _rows(road_map.layer(output)) for output in (*ALONG, "ROAD_SURFACE", "LANES")}
     pieces = [piece for output in ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES") for piece in _doubtful_rows(road_map, output, rows)]
     # a lane is looked at once: its area only where its driving line says nothing
@@ -51,8 +54,8 @@ def doubts_of(road_map: RoadMap, kinds: Iterable[str] = ()) -> list[Doubt]:
     for extra in (_missing_edges(rows), _grown_surface(rows), _lane_ends(rows), _warned_places(rows, road_map.provenance.warnings)):
         pieces += extra
     kept_kinds = set(kinds)
-    return _gathered(sorted((piece for piece in pieces if not kept_kinds or piece.kind in kept_kinds),
-                            key=lambda piece: (piece.road, piece.station)), road_map.vectors[0].crs())
+    return _gathered(sorted((piece for piece in pieces if (not kept_kinds or piece.kind in kept_kinds)
+                             and not 0.0 < piece.length < shortest), key=lambda piece: (piece.road, piece.station)), road_map.vectors[0].crs())
 
 
 def _doubtful_rows(road_map, output, rows):
@@ -63,8 +66,9 @@ def _doubtful_rows(road_map, output, rows):
             reading = str(row.get("other") or "")
             if reading:
                 why += tr("; almost as likely: {reading}").format(reading=second_reading(reading))
+            length = _number(row.get("length_m")) or 0.0
             yield DoubtfulPiece(f"{title(feature)}: {why}", target, course_of(feature.geometry()), road, _number(row["station_m"]),
-                                (_number(row.get("length_m")) or 0.0) * share, target, _number(row.get("offset_m")), reading)
+                                length, length * share, target, _number(row.get("offset_m")), reading)
 
 
 def reason(row: dict) -> tuple[str, float]:
@@ -143,15 +147,11 @@ class DoubtfulPiece:
     line: QgsGeometry   # its course
     road: int   # road, station: where it begins along the road
     station: float
+    length: float   # m; 0 of what is a place, such as the end of a lane
     doubt: float   # m of it that are likely to be wrong
-    target: str = ""   # what a correction calls it; "" where there is nothing that a correction could be about
+    target: str = ""   # what a correction calls it; "" where there is nothing that a correction could be about, but a note that it was seen
     offset: float | None = None   # where it begins across the road
     other: str = ""   # the second reading of the program, as the layer holds it; "" where there is none
-
-    @property
-    def key(self) -> str:
-        """By which the piece is known when the places are made again."""
-        return f"{self.kind} {self.road} {self.station:.1f} {'' if self.offset is None else f'{self.offset:.1f}'}"
 
 
 def _missing_edges(rows):
@@ -166,7 +166,7 @@ def _missing_edges(rows):
                 line = _along(rows, road, first, last) if last - first >= LEAST_GAP else None
                 if line is not None:
                     text = tr("No road edge on the {side} for {length:.0f} m").format(side=WORDS["side"][side], length=last - first)
-                    yield DoubtfulPiece(text, "edge", line, road, first, LIKELY_WRONG["gap"] * (last - first))
+                    yield DoubtfulPiece(text, "edge", line, road, first, last - first, LIKELY_WRONG["gap"] * (last - first))
 
 
 def _grown_surface(rows):
@@ -176,7 +176,7 @@ def _grown_surface(rows):
             geometry = feature.geometry()   # lives as long as its parts
             rim = QgsGeometry(next(geometry.constParts()).exteriorRing().clone())
             text = tr("Road surface, {length:.0f} m: grown, no edge was found on one side at least").format(length=end - start)
-            yield DoubtfulPiece(text, "surface", rim, road, start, LIKELY_WRONG["grown"] * (end - start))
+            yield DoubtfulPiece(text, "surface", rim, road, start, end - start, LIKELY_WRONG["grown"] * (end - start))
 
 
 def _lane_ends(rows):
@@ -190,7 +190,7 @@ def _lane_ends(rows):
         line = _along(rows, road, station - 1.0, station + 1.0) if left > ROAD_END else None
         if line is not None:
             text = tr("Lane {lane} ends here, {left:.0f} m before the end of the road").format(lane=fields.get("lane"), left=left)
-            yield DoubtfulPiece(text, "lane", line, road, station, LIKELY_WRONG["lane_end"])
+            yield DoubtfulPiece(text, "lane", line, road, station, 0.0, LIKELY_WRONG["lane_end"])
 
 
 def _warned_places(rows, warnings):
@@ -200,7 +200,7 @@ def _warned_places(rows, warnings):
             line = _along(rows, place.road, place.start, max(place.end, place.start + 1.0))
             if line is not None:
                 yield DoubtfulPiece(tr("Warning: {text}").format(text=told(text)), "warning", line, place.road, place.start,
-                                    LIKELY_WRONG["warning"] * max(place.end - place.start, 1.0))
+                                    place.end - place.start, LIKELY_WRONG["warning"] * max(place.end - place.start, 1.0))
 
 
 def _along(rows, road, start, end):

@@ -16,9 +16,10 @@ from ...algorithms.algorithm import SettingSpec
 from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
-from ...processing_provider.results.road_maps import CLOUDS, RoadMap, origin_of
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, origin_of
+from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
-from ..dialogs.algorithm_dialog import PROVIDER, table_of_database
+from ..dialogs.algorithm_dialog import table_of_database
 from ..dialogs.stage_inputs import STAGES, TRAJECTORY, stage_again
 from ..widgets import button, column, row, wrapped
 from .corrections_layer import NAME, changed_at
@@ -91,6 +92,12 @@ def values_again(road_map: RoadMap) -> dict[str, object]:
     for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
         values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
     return {**values, **saved(road_map)}
+
+
+def values_with(road_map: RoadMap, corrections: QgsVectorLayer | None) -> dict[str, object]:
+    """`values_again`, with the point clouds where they lie now, and the corrections made in the map, if any."""
+    clouds, missing = clouds_of(road_map, QgsProject.instance())
+    return {**values_again(road_map), **({} if missing else {CLOUDS: clouds}), NAME: None if corrections is None else corrections.id()}
 
 
 def saved(road_map: RoadMap) -> dict[str, str]:

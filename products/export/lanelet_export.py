@@ -10,11 +10,13 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
+from ...core.common.arrays import linked_groups
 from ...core.common.errors import RoadExtractionError
 from ...core.common.setting import Limited, setting
 from ...core.driving.layers import Lanes
 from ...core.io.crs import as_in_file, horizontal_part, parse_crs
 from .lanelet_map import KIND_OF_WAY, LANE_ID, OURS, PATTERN_OF_WAY, Lanelet, Way
+from .right_of_way import named, rights_of_way
 from .shared_borders import SAME_VERTEX, WIDEST_DOUBLE, cuts_beside, numbered
 from .sources import LEAST_CURB, LOCAL_CRS, NearestValues, RoadMapSource, is_stated, sigma_of_lanes, stop_lines, walked_crossings, without_repeats
 from .xml_tree import file_text
@@ -26,8 +28,6 @@ SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_l
 PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
 SUBTYPE_OF_PATTERN = {pattern: subtype for subtype, pattern in PATTERN_OF_WAY.items()} | {"double": "solid_solid"}
 TURN = 0.5              # rad from which a way through a junction is a turn
-GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH", "3.01"), ("CH", "3.02"), ("FR", "AB3a"), ("FR", "AB4"),
-            ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
 
 
 @dataclass(frozen=True)
@@ -67,25 +67,24 @@ def _bridged(lanes: Lanes) -> tuple[Lanes, np.ndarray, int]:
     """(lanes of a map from elsewhere that reach those that they are linked to, (V,) whether a vertex was an end before, links that are left out as
     their ends lie too far apart).
 
-    A lane whose corner misses that of the other one begins or ends there with a further vertex; so do all that share its corner.
+    Of corners that links join all are led to one, that of a lane before those of connectors: lanes that miss it begin or end there with a further
+    vertex.
     """
-    nodes, first = numbered(np.concatenate([lanes.left, lanes.right]))
+    places = np.concatenate([lanes.left, lanes.right])
+    nodes, first = numbered(places)
     corners = {(k, end): (row, row + len(lanes.left)) for k in range(len(lanes)) for end, row in ((0, lanes.start[k]), (1, lanes.start[k + 1] - 1))}
-    places, row_of = np.concatenate([lanes.left, lanes.right]), {name: k for k, name in enumerate(lanes.lane_id)}
-    links = [((k, 1), (row_of[name], 0)) for k, names in enumerate(lanes.successors) for name in names if name in row_of]
-    met = {nodes[row] for one, other in links for row, goal in zip(corners[one], corners[other]) if nodes[row] == nodes[goal]}
+    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
+    links = np.array([(*corners[k, 1], *corners[row_of[name], 0], k, row_of[name])
+                      for k, names in enumerate(lanes.successors) for name in names if name in row_of], int).reshape(-1, 6)
+    gaps = np.hypot(*(places[links[:, :2]] - places[links[:, 2:4]]).transpose(2, 0, 1)[:2]).max(1, initial=0.0)
+    near, broken = links[gaps <= WIDEST_DOUBLE], set(map(tuple, links[gaps > WIDEST_DOUBLE, 4:].tolist()))
+    group = linked_groups(nodes[near[:, :2].ravel()], nodes[near[:, 2:4].ravel()], len(first))[nodes]
     goal_of: dict[int, int] = {}
-    broken = set()
-    for one, other in links:
-        # a connector reaches out for its lane; else it is always the same of two roads
-        reaching, fixed = sorted((one, other), key=lambda end: (lanes.type[end[0]] != "connector", lanes.road[end[0]], end[0]))
-        pairs = [(nodes[row], int(first[nodes[goal]])) for row, goal in zip(corners[reaching], corners[fixed]) if nodes[row] != nodes[goal]]
-        far = any(np.hypot(*(places[goal] - places[row])[:2]) > WIDEST_DOUBLE for row, goal in zip(corners[reaching], corners[fixed]))
-        if far or any(node in met or goal_of.get(node, goal) != goal for node, goal in pairs):
-            broken.add((one[0], other[0]))
-        else:
-            goal_of.update(pairs)
-    extra = {end: [goal_of.get(nodes[row], row) for row in rows] for end, rows in corners.items() if any(nodes[row] in goal_of for row in rows)}
+    for end in sorted(corners, key=lambda end: (lanes.type[end[0]] == "connector", lanes.road[end[0]], end[0])):
+        for row in corners[end]:
+            goal_of.setdefault(group[row], int(first[nodes[row]]))
+    goals = {end: [goal_of[group[row]] for row in rows] for end, rows in corners.items()}
+    extra = {end: goals[end] for end, rows in corners.items() if (nodes[goals[end]] != nodes[list(rows)]).any()}
     successors = [tuple(name for name in names if (k, row_of.get(name)) not in broken) for k, names in enumerate(lanes.successors)]
     return *_with_ends(replace(lanes, successors=successors), places, extra), len(broken)
 
@@ -227,38 +226,30 @@ class _Drafting:
             if lanelet.name:
                 parts[lanelet.name].append(lanelet)
         signs = [self._signal(shapely.get_coordinates(point, include_z=True)[0], row, parts) for point, row in self.source.signals or ()]
-        if signs := [sign for sign in signs if sign is not None]:
-            self._give_way(signs, {name: lanelets[-1] for name, lanelets in parts.items()})
+        self._right_of_way(signs, parts)
 
-    def _give_way(self, signs, last):
-        """Who waits at signs, (way, names of lanes), and for whom: lanes whose ways through the junction cross theirs and that have no such sign.
+    def _right_of_way(self, signs, parts):
+        """Rules of who waits for whom, with the sign and the stop line where there are any.
 
-        last : name of a lane -> its last lanelet, which alone is one of the rule
+        signs : ways of the signals; parts : name of a lane -> its lanelets, of which the one next to the junction is one of a rule
         """
         lanes, rows = self.lanes, {name: k for k, name in enumerate(self.lanes.lane_id)}
-        ways = {name: [rows[after] for after in lanes.successors[rows[name]] if after in rows and lanes.type[rows[after]] == "connector"]
-                for name in last if lanes.type[rows[name]] != "connector"}
-        borders = map(lanes.borders, range(len(lanes)))
-        area = [shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders]
-        signs = [(sign, [name for name in names if ways.get(name)]) for sign, names in signs]
-        waiting = {name for _, names in signs for name in names}
         stops = [way for way in self.draft.ways if way.tags["type"] == "stop_line"]
-        for sign, names in signs:
-            # more than the stripe that neighbours have between them
-            taken = shapely.union_all([area[k] for name in names for k in ways.get(name, ())]).buffer(-WIDEST_DOUBLE)
-            first = [last[name] for name in sorted(ways.keys() - waiting) if any(taken.intersects(area[k]) for k in ways[name])]
-            before = shapely.union_all([area[rows[name]] for name in names])
+        for right in rights_of_way(self.source):
+            waiting, first = ([parts[name][0 if lanes.type[rows[name]] == "connector" else -1] for name in names if name in parts]
+                              for names in (right.waiting, right.first))
+            led = [k for name, k in rows.items() if name in right.waiting or not set(lanes.successors[k]).isdisjoint(right.waiting)]
+            before = shapely.union_all([shapely.make_valid(shapely.polygons(np.concatenate([left, line[::-1]])[:, :2]))
+                                        for left, line in map(lanes.borders, led)])
             lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
-            if first:
-                members = {"refers": [("way", sign)], "yield": [("relation", last[name].id) for name in names],
+            if waiting and first:
+                members = {"refers": [("way", signs[number]) for number in right.signs], "yield": [("relation", lanelet.id) for lanelet in waiting],
                            "right_of_way": [("relation", lanelet.id) for lanelet in first], "ref_line": lines}
-                self._rule("right_of_way", members, [*(last[name] for name in names), *first])
+                self._rule("right_of_way", members, [*waiting, *first])
 
     def _signal(self, place, row, parts):
-        """A light, sign or pole as a way, and as a rule of the lanelets that are nearest to it of each lane that it holds for.
-
-        Returns the number of the way and the names of these lanes if they give way at it, else None.
-        """
+        """The number of the way of a light, sign or pole, which is a rule of the lanelets that are nearest to it of each lane that it holds for;
+        None of what is no signal."""
         kind, height = row["kind"], row.get("height_m")
         if kind not in KIND_OF_WAY.values():
             return None
@@ -272,17 +263,15 @@ class _Drafting:
             tags["subtype"] = "red_yellow_green" if kind == "traffic_light" else code or "unknown"
             tags |= {OURS + name: value for name, value in known.items()} | ({"height": f"{height:.2f}"} if height else {})
         way = self._new_way(nodes, tags)
-        named = [parts[name.strip()] for name in str(row.get("lanes") or "").split(",") if name.strip() in parts]
-        if not named or kind == "pole":
-            return None
+        held = [parts[name] for name in named(row.get("lanes")) if name in parts]
 
         def apart(lanelet):
             middle = self.draft.nodes[list(self.draft.ways[lanelet.way("centerline")].nodes), :2]
             return float(np.hypot(*(middle - place[:2]).T).min())
 
-        self._rule(tags["type"], {"refers": [("way", way)]}, [min(lanelets, key=apart) for lanelets in named])
-        names = {lanelet.name: None for lanelets in named for lanelet in lanelets}
-        return (way, list(names)) if (row.get("country"), row.get("code")) in GIVE_WAY else None
+        if held and kind != "pole":
+            self._rule(tags["type"], {"refers": [("way", way)]}, [min(lanelets, key=apart) for lanelets in held])
+        return way
 
     def _rule(self, subtype, members, lanelets):
         """A rule of traffic, and that lanelets obey it."""

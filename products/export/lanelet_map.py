@@ -242,7 +242,7 @@ def _tag_number(tags, name, element):
 PATTERN_OF_WAY = {"solid": "solid", "dashed": "dashed", "solid_solid": "double-solid",
                   "dashed_dashed": "double-dashed", "solid_dashed": "solid-dashed", "dashed_solid": "dashed-solid"}
 KIND_OF_WAY = {"traffic_light": "traffic_light", "traffic_sign": "sign", "pole": "pole", "post": "pole"}
-CARRIED = ("traffic_light", "traffic_sign", "speed_limit")   # rules of traffic that layers hold
+CARRIED = ("traffic_light", "traffic_sign", "speed_limit", "right_of_way")   # rules of traffic that layers hold
 PAINTED_WAYS = ("line_thin", "line_thick")
 EDGE_WAYS = ("curbstone", "road_border", "guard_rail", "wall", "fence")
 NO_LAND = 1.0   # degrees from latitude and longitude 0
@@ -359,11 +359,12 @@ def _signals(whole, places, crs):
 
 def _known(whole, lanelet):
     """What a map says of the road of a lanelet, as ROAD_ATTRIBUTES."""
-    tags = lanelet.tags
-    signs = [whole.others[id].tags.get("sign_type", "") for _, id in lanelet.members.get("regulatory_element", ())
-             if id in whole.others and whole.others[id].tags.get("subtype") == "speed_limit"]
+    tags, rules = lanelet.tags, [whole.others[id] for _, id in lanelet.members.get("regulatory_element", ()) if id in whole.others]
+    signs = [rule.tags.get("sign_type", "") for rule in rules if rule.tags.get("subtype") == "speed_limit"]
     speed = kmh(tags.get("speed_limit", "")) or next((kmh(sign.rpartition("-")[2]) for sign in signs), None)
-    known = {"speed_kmh": speed, "name": tags.get("road_name"), "surface": tags.get("road_surface")}
+    first = dict.fromkeys(str(id) for rule in rules if ("relation", lanelet.id) in rule.members.get("yield", ())
+                          for _, id in rule.members.get("right_of_way", ()))
+    known = {"speed_kmh": speed, "name": tags.get("road_name"), "surface": tags.get("road_surface"), "yields_to": ",".join(first)}
     return {name: value for name, value in known.items() if value}
 
 
@@ -372,8 +373,7 @@ def _left_out(whole):
     count = Counter(f"{lanelet.tags['subtype']} lanelet" for lanelet in whole.lanelets.values()
                     if lanelet.tags.get("subtype") in NEVER_DRIVEN and lanelet.tags["subtype"] != "crosswalk")
     return count + Counter(f"{kind} {relation.tags.get('subtype', '')}".strip() for relation in whole.others.values()
-                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED
-                           and not (relation.tags.get("subtype") == "right_of_way" and "refers" in relation.members))
+                           if (kind := relation.tags.get("type", "relation")) != "regulatory_element" or relation.tags.get("subtype") not in CARRIED)
 
 
 def kmh(text: str) -> float | None:

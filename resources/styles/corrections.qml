@@ -2,7 +2,10 @@
 <qgis styleCategories="Symbology|Labeling" version="3.40.6-Bratislava" labelsEnabled="0">
   <renderer-v2 type="categorizedSymbol" attr="action" symbollevels="0" forceraster="0" referencescale="-1" enableorderby="0">
     <categories>
-      <category uuid="{98439042-f4d7-481e-826d-a963e0722e85}" type="string" symbol="0" value="accept" render="true" label="Accepted"/>
+      <category uuid="{98439042-f4d7-481e-826d-a963e0722e85}" type="List" symbol="0" render="true" label="Accepted">
+        <val type="string" value="accept"/>
+        <val type="string" value="seen"/>
+      </category>
       <category uuid="{76009211-9d5a-4cc3-9cba-5b8ccb933a69}" type="string" symbol="1" value="delete" render="true" label="To be deleted"/>
       <category uuid="{8b7c02c9-c19b-4315-83c0-9f0398a13494}" type="string" symbol="2" value="move" render="true" label="Moved here"/>
       <category uuid="{b8a058b1-daf9-4cbb-a7b4-4ec1637daa40}" type="string" symbol="3" value="draw" render="true" label="Drawn"/>

@@ -1,30 +1,34 @@
 """The window of doubtful places, and the corrections that are made in it."""
 
+import os
+import re
 from dataclasses import replace
 from types import SimpleNamespace
+from uuid import uuid4
 
 import numpy as np
 import pytest
 from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
-from lanewright.desktop.review import smart_pick
-from lanewright.desktop.review.corrections_layer import corrections_layers
+from lanewright.desktop.review import remaking, smart_pick
+from lanewright.desktop.review.corrections_layer import add_correction, corrections_layers, corrections_of, new_corrections_layer
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
 from lanewright.processing_provider.styling import second_reading
-from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsRectangle, QgsVectorLayer
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsProviderRegistry, QgsRectangle, QgsSettings, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
-from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
-from qgis.PyQt.QtGui import QImage
-from qgis.PyQt.QtWidgets import QMainWindow
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QAction, QImage
+from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
 from road_map_layers import EAST, NORTH, added, run_at
 
 
 @pytest.fixture
 def window(qgis_app):
     """A dock beside a map of a road with two doubtful places; of the first, an edge was bridged and a lane inferred."""
+    QgsSettings().remove("lanewright/doubts")
     project = QgsProject.instance()
     project.clear()
     piece = lambda at, **row: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, station_m=float(at), length_m=8.0, **row))  # noqa: E731
@@ -364,6 +368,148 @@ def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_of
         over_points.undo()
 
 
+# -- making it again, and vertices
+
+class Task(QObject):
+    progressChanged = pyqtSignal(float)
+    canceled = False
+
+    def cancel(self):
+        self.canceled = True
+
+    def isCanceled(self):
+        return self.canceled
+
+
+@pytest.fixture
+def runs(at_first, monkeypatch):
+    """The runs that the window began: none of them does anything until it is ended by its function `ended(fine)`."""
+    begun = []
+
+    class Run:
+        reason = "The disk is full."
+
+        def __init__(self, name, parameters, ended):
+            self.parameters, self.task, self.loaded = parameters, Task(), []
+            self.ended = lambda fine: ended(self, fine)
+            begun.append(self)
+
+        def load_results(self):
+            self.loaded.append(True)
+
+    monkeypatch.setattr(remaking, "BackgroundRun", Run)
+    at_first.iface.mainWindow().show()
+    return begun
+
+
+def test_the_corrected_stretch_is_made_again_while_one_goes_on_and_what_is_corrected_meanwhile_is_next(at_first, runs):
+    at_first.list.setCurrentRow(1)
+    at_first.delete_button.click()   # a lane from 14 to 22 m
+    at_first.run_button.click()
+    line = at_first.remaking
+    assert line.isVisible() and line.said.text() == "road 0, 14–22 m is being made again."
+    assert runs[0].parameters["CORRECTIONS"] == at_first.layer.id() and {"ROAD_EDGES", "DRIVING_LINES"} <= set(runs[0].parameters)
+    runs[0].task.progressChanged.emit(40.0)
+    assert line.bar.value() == 40
+    at_first.list.setCurrentRow(0)
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    at_first.run_button.click()
+    assert len(runs) == 1 and "corrected meanwhile is next" in line.said.text() and at_first.place.station == 80, "one goes on"
+    runs[0].ended(True)
+    assert runs[0].loaded and len(runs) == 2 and line.said.text() == "road 0, 10–18 m is being made again."
+    runs[1].ended(True)
+    assert len(runs) == 2 and not line.isVisible()
+
+
+def test_cancel_ends_the_run_and_those_that_wait_and_what_failed_says_why(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click(), at_first.run_button.click()
+    at_first.remaking.findChild(QPushButton).click()
+    assert runs[0].task.canceled
+    runs[0].ended(False)
+    assert len(runs) == 1 and not at_first.remaking.isVisible() and at_first.iface.messageBar().currentItem() is None
+    at_first.run_button.click()
+    assert "road 0, 10–18 m" in at_first.remaking.said.text(), "it is still to be made"
+    runs[1].ended(False)
+    assert "The disk is full" in at_first.iface.messageBar().currentItem().text() and not runs[1].loaded
+
+
+def test_on_wish_every_correction_is_made_at_once(at_first, runs):
+    at_first.at_once.setChecked(True)
+    try:
+        at_first.accept_button.click()
+        assert len(runs) == 1
+        runs[0].ended(True)
+        at_first.undo_button.click()
+        assert len(runs) == 2, "a map without the correction"
+    finally:
+        at_first.at_once.setChecked(False)
+
+
+def test_a_run_of_a_project_that_was_closed_brings_nothing_into_the_next(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    QgsProject.instance().clear()
+    runs[0].ended(True)
+    assert not runs[0].loaded
+
+
+def test_what_is_corrected_during_a_run_stays_to_be_made_after_it(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    before = at_first.layer.customProperty("lanewright/changed/edge")
+    at_first.list.setCurrentRow(0)
+    at_first.delete_button.click()
+    during = at_first.layer.customProperty("lanewright/changed/edge")
+    runs[0].ended(True)
+    assert before < during < at_first.layer.customProperty("lanewright/changed/edge"), "later than the run, which does not have it"
+
+
+def test_what_is_being_drawn_stays_when_the_map_comes_that_was_made_meanwhile(at_first):
+    at_first.begin_draw("edge")
+    at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
+    shown, again = [], []
+    at_first.shown.connect(shown.append), at_first.made_again.connect(again.append)
+    newer = added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (10 0 100, 18 0 100)", dict(
+        road=0, station_m=10.0, length_m=8.0, side="left", status="bridged")), run=run_at(12))
+    at_first._follow()
+    assert again[0].layers == (newer,) and not shown, "map and section stay where one is"
+    at_first.tool.add(QgsPointXY(EAST + 30, NORTH + 4))
+    at_first.tool.finish()
+    assert [length for *_, length in corrections()] == [pytest.approx(10.0)]
+
+
+def test_one_key_takes_up_the_vertex_tool_on_the_corrections_and_once_more_keeps_what_was_dragged(at_first):
+    iface, chosen, triggered = at_first.iface, [], []
+    iface.setActiveLayer = chosen.append
+    for name in ("actionVertexToolActiveLayer", "actionPan"):
+        setattr(iface, name, lambda action=QAction(name, at_first, triggered=lambda checked, name=name: triggered.append(name)): action)
+    key = {action.shortcut().toString(): action for action in at_first.actions()}["V"]
+    assert not at_first.vertex_button.isEnabled()
+    at_first.accept_button.click()
+    key.trigger()
+    layer = at_first.layer
+    assert chosen == [layer] and layer.isEditable() and triggered == ["actionVertexToolActiveLayer"] and "Ctrl+Z" in at_first.hint.text()
+    row, changed = next(layer.getFeatures()), layer.customProperty("lanewright/changed/edge")
+    layer.beginEditCommand("drag"), layer.moveVertex(EAST + 19, NORTH + 1, row.id(), 1), layer.endEditCommand()
+    layer.beginEditCommand("drag"), layer.moveVertex(EAST + 30, NORTH + 1, row.id(), 1), layer.endEditCommand()
+    layer.undoStack().undo()
+    assert layer.customProperty("lanewright/changed/edge") > changed, "the steps from there are stale"
+    key.trigger()
+    assert not layer.isEditable() and triggered[-1] == "actionPan" and not at_first.hint.isVisible()
+    assert [length for *_, length in corrections()] == [pytest.approx(np.hypot(9, 1))]
+
+
+def test_take_back_while_vertices_are_dragged_takes_the_last_one(at_first):
+    at_first.accept_button.click()
+    at_first.layer.startEditing()
+    at_first.accept_button.click()
+    at_first.undo_button.click()
+    at_first.layer.commitChanges()
+    assert [(action, target) for action, target, *_ in corrections()] == [("accept", "edge")]
+
+
 def photos(folder, *rows):
     """A layer of the places of photos; rows of (name, m east and north, direction or None)."""
     layer = QgsVectorLayer("Point?crs=EPSG:32650&field=photo:string&field=direction:double", "Photos", "memory")
@@ -398,3 +544,112 @@ def test_a_list_of_photos_with_names_beside_it_is_enough(window, tmp_path):
         f"file://{tmp_path}/list.csv?type=csv&xField=x&yField=y&crs=EPSG:32650", "list", "delimitedtext"))
     window.go(road_maps(QgsProject.instance())[0])
     assert window.photo.photo.path == tmp_path / "a.jpg" and window.photo.photo.distance > 5, "the nearer one lies on another computer"
+
+
+# -- two people
+
+def place_of_colleagues(kind, folder):
+    """A new file, or a new table of the server that libpq's variables name."""
+    if kind == "file":
+        return str(folder / "corrections.gpkg")
+    return f"dbname='{os.environ['PGDATABASE']}' key='id' table=\"public\".\"corrections_{uuid4().hex[:8]}\" (geom)"
+
+
+@pytest.fixture(params=["file", *(["database"] if os.environ.get("PGHOST") else [])])
+def colleague(request, at_first, tmp_path):
+    """The corrections of the window, which has accepted the first edge, as a colleague has them open: by a connection and project of his own."""
+    place = place_of_colleagues(request.param, tmp_path)
+    at_first.ask_for_file = lambda: place
+    at_first.ask = lambda question: pytest.fail(f"nothing is to be asked: {question}")
+    at_first.accept_button.click()
+    theirs = QgsProject()
+    yield new_corrections_layer(theirs, place, at_first.layer.crs(), "B12")
+    if request.param == "database":
+        QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(place, {}).dropVectorTable(
+            "public", re.search("corrections_[^\"]*", place)[0])
+
+
+def decides(colleague, piece, action, author="Ada"):
+    """What the window of the colleague writes."""
+    former = corrections_of(colleague, [piece], colleague.crs()).get(0)
+    number = add_correction(colleague, piece.line, colleague.crs(), former, action=action, target=piece.target, road=piece.road,
+                            station_m=piece.station)
+    colleague.dataProvider().changeAttributeValues({number: {colleague.fields().lookupField("author"): author}})
+
+
+def test_two_people_decide_about_different_places_and_see_what_the_other_has_done(at_first, colleague):
+    decides(colleague, at_first.places[1].pieces[0], "delete")
+    at_first.accept_button.click()
+    assert [action for action, *_ in corrections()] == ["accept", "delete", "accept"] and "3." in at_first.kept.text()
+    assert at_first.place.station == 80 and "2 done" in at_first.where.text()
+    assert "→ delete (Ada)" in at_first.list.item(0).text()
+    begin, end = QgsPointXY(EAST + 20, NORTH + 4), QgsPointXY(EAST + 31, NORTH + 4)
+    add_correction(colleague, QgsGeometry.fromPolylineXY([begin, end]), colleague.crs(), action="draw", target="edge")
+    assert len(corrections()) == 4
+
+
+def test_who_decides_later_about_the_same_piece_is_told_and_chooses(at_first, colleague):
+    asked = []
+    at_first.ask = lambda question: bool(asked.append(question))
+    decides(colleague, at_first.chosen[0], "delete")
+    at_first.accept_button.click()
+    assert len(asked) == 1 and "→ delete (Ada)" in asked[0] and [action for action, *_ in corrections()] == ["accept", "delete"]
+    assert "→ delete (Ada)" in at_first.list.currentItem().text(), "the list shows what holds now"
+    at_first.accept_button.click()
+    assert len(asked) == 1 and [action for action, *_ in corrections()] == ["accept", "accept"], "seen and decided: theirs makes room"
+
+
+def test_a_line_that_moves_what_a_colleague_has_decided_meanwhile_is_not_lost(at_first, colleague):
+    at_first.move_button.click()
+    decides(colleague, at_first.chosen[0], "delete")
+    at_first.ask = lambda question: "→ delete (Ada)" in question
+    for x in (14, 22):
+        at_first.tool.add(QgsPointXY(EAST + x, NORTH + 1))
+    at_first.tool.finish()
+    assert [action for action, *_ in corrections()] == ["accept", "move"]
+
+
+def test_a_correction_of_a_colleague_is_not_taken_back(at_first, colleague):
+    decides(colleague, at_first.places[1].pieces[0], "delete")
+    at_first.undo_button.click()
+    assert [action for action, *_ in corrections()] == ["delete"] and not at_first.undo_button.isEnabled()
+
+
+# -- what is gone through, and the report of it
+
+def test_short_pieces_are_passed_over_and_the_choice_is_kept(at_first):
+    at_first.kinds.setCurrentIndex(at_first.kinds.findData("edge"))
+    at_first.shortest.setValue(8.0)
+    assert [place.station for place in at_first.places] == [10.0, 80.0]
+    at_first.shortest.setValue(9.0)
+    assert at_first.places == [] and at_first.list.count() == 0
+    again = DoubtDock(at_first.iface)
+    assert (again.kinds.currentData(), again.shortest.value()) == ("edge", 9.0)
+    again.remove()
+
+
+def test_what_no_correction_could_be_about_is_done_once_it_was_seen_and_asks_nothing_of_the_map(window, tmp_path):
+    project = QgsProject.instance()
+    whole, half = ((f"LINESTRING Z (0 {y} 100, {end} {y} 100)", dict(
+        road=0, side=side, status="measured", kind="along", station_m=0.0, end_m=end, length_m=end)) for side, y, end in (
+            ("left", 4, 100.0), ("right", -4, 50.0)))
+    added(project, "ROAD_EDGES", ROAD_EDGES, whole, half, run=run_at(9))
+    window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
+    window.go(road_maps(project)[0])
+    assert "No road edge on the right for 50 m" in window.list.item(0).text() and not window.delete_button.isEnabled()
+    window.accept_button.click()
+    assert "1 done" in window.where.text() and "→ seen" in window.list.item(0).text()
+    assert [(action, target) for action, target, *_ in corrections()] == [("seen", "edge")]
+
+
+def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_long_they_are(at_first, tmp_path, monkeypatch):
+    page, opened = tmp_path / "review.html", []
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.ask_for_file", lambda *names: str(page))
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.open_file", lambda iface, path: opened.append(path))
+    at_first.accept_button.click()
+    at_first.delete_button.click()
+    at_first.report_button.click()
+    cells = re.sub(r"(\s*<[^>]*>\s*)+", "|", page.read_text(encoding="utf-8"))
+    assert opened == [str(page)]
+    assert "|lane|0|0|1|8|0|0|0|0|0|" in cells and "|edge|1|8|0|0|0|0|1|8|1|" in cells and "|Together|1|8|1|8|0|0|1|8|1|" in cells
+    assert "|0|80.0|8.0|1.2|Road edge" in cells, cells

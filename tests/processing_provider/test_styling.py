@@ -2,9 +2,11 @@
 
 import html
 import re
+from datetime import datetime, timezone
 
 import numpy as np
 import pytest
+from lanewright.algorithms.provenance import Provenance
 from lanewright.core.common.features import (
     CONTROL_POINTS,
     CROSS_SECTIONS,
@@ -23,10 +25,11 @@ from lanewright.core.common.features import (
 from lanewright.core.driving.layers import LANE_TYPES
 from lanewright.processing_provider.call import qgis_fields
 from lanewright.processing_provider.results.road_maps import Run
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, style_on_load
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, say_in_users_language, style_on_load
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
@@ -41,6 +44,7 @@ from qgis.core import (
     QgsRenderContext,
     QgsSymbol,
     QgsSymbolLayerUtils,
+    QgsVectorFileWriter,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QSize
@@ -331,3 +335,59 @@ def test_no_style_makes_the_window_wait(path):
             depth += {"(": 1, ")": -1}.get(letter, 0)
             deepest = max(deepest, depth)
         assert deepest <= 12, value
+
+
+def named_by(layer):
+    """{cluster: what stands beside it} of the markings of a layer."""
+    rule = layer.labeling().rootRule().children()[0]
+    text, texts = QgsExpression(rule.settings().fieldName), {}
+    assert not text.hasParserError(), text.parserErrorString()
+    for row in layer.getFeatures(rule.filterExpression()):
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+        context.setFeature(row)
+        texts[row["cluster"]] = text.evaluate(context)
+    return texts
+
+
+def test_classes_of_paint_are_named_once_for_a_figure_and_arrows_by_where_they_point(qgis_app):
+    layer = layer_of("Polygon", MARKINGS)
+    layer.setCrs(QgsCoordinateReferenceSystem("EPSG:32650"))
+    bar = "POLYGON(({0} {1}, {2} {1}, {2} {3}, {0} {3}, {0} {1}))"
+    left = "POLYGON((-0.1 0, 0.1 0, 0.1 2.7, -0.4 3.5, 0 4.2, -1 4.5, -0.6 2.8, -0.5 3, -0.1 2.3, -0.1 0))"
+    shapes = [("zebra", bar.format(x, 20, x + 0.5, 24)) for x in range(6)] + [("zebra", bar.format(40, 20, 40.5, 24)), ("arrow", left)]
+    shapes += [("arrow", "POLYGON((3 0, 3.2 0, 3.2 2, 3.3 2, 3.1 3, 2.9 2, 3 2, 3 0))"), ("stop", bar.format(0, 30, 3, 30.5)),
+               ("symbol", bar.format(60, 0, 60.3, 0.5)), ("lane", bar.format(0, 50, 0.12, 53))]
+    for cluster, (kind, shape) in enumerate(shapes):
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromWkt(shape))
+        feature["cluster"], feature["class"] = cluster, kind
+        layer.dataProvider().addFeature(feature)
+    apply_style(layer, STYLES / "markings.qml", MARKINGS, "MARKINGS")
+    texts = named_by(layer)
+    assert sorted(texts.values()) == ["Left", "Stop line", "Straight", "Zebra crossing", "Zebra crossing"], texts
+    assert texts[6] == "Zebra crossing" and texts[7] == "Left", "a lane line, and a fleck of paint, have no name"
+
+
+@pytest.mark.parametrize("made_in, opened_in, legend", [("en", "de", "Bordstein"), ("de", "en", "Curb")])
+def test_layers_of_a_colleague_speak_the_language_of_who_opens_them_and_keep_their_colours(tmp_path, provider, qgis_app, made_in, opened_in, legend):
+    path = str(tmp_path / "theirs.gpkg")
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    options.layerName = "road_edges"
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer_of("LineString", ROAD_EDGES), path, QgsProject.instance().transformContext(), options)
+    provenance = Provenance("roadmap", "1.0", {}, datetime(2026, 6, 1, 8, tzinfo=timezone.utc))
+    try:
+        speak(made_in)
+        embed_style("ROAD_EDGES", f"ogr:dbname='{path}' table=\"road_edges\" (geom)", "Road edges", ROAD_EDGES, provenance)
+        speak(opened_in)
+        layer = QgsVectorLayer(f"{path}|layername=road_edges", "roadmap", "ogr")
+        before = layer.renderer().symbols(QgsRenderContext())[0].dump()
+        say_in_users_language([layer, layer_of("LineString", ROAD_EDGES)])
+        titles = [category.label() for category in layer.renderer().categories()]
+        alias = layer.attributeAlias(layer.fields().lookupField("side"))
+        assert legend in titles and alias == {"de": "Seite", "en": "Side"}[opened_in], (titles, alias)
+        assert layer.renderer().symbols(QgsRenderContext())[0].dump() == before and len(layer.styleManager().styles()) > 1
+        layer.setFieldAlias(0, "Mine")
+        say_in_users_language([layer])
+        assert layer.attributeAlias(0) == "Mine", "once"
+    finally:
+        speak("en")

@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from os import PathLike
 
-import numpy as np
-from scipy import ndimage
-
-from ...common.arrays import order_by
 from ...common.progress import Progress
-from ...execution.in_step import Asked, Work, in_step
+from ...execution.in_step import in_step
 from ...execution.phase import THREADS, Executor, Phase
-from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...intensity.correction import saturation_of
+from ...intensity.scatter import WINDOW_UNITS, WINDOWS_PER_TASK, ScannerScatter, place_of, scanner_scatter, windows_of
 from ...intensity.tiled_image import TiledImage
 from ...io.geotiff import IntensityImage
 from ...survey.frame.road_frame import RoadFrame
-from ...survey.store.records import COORDINATE_SCALE, Points
+from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from ..road_grid import CELL_UNITS
-from ..weights import ASPHALT
 from .settings import MarkingSettings, PaintMethod
-from .windows import THRESHOLD_WINDOW, Burn, PaintSource, burn_points, marking_mask, paint_of_window, place_of, points_of_rows, windows_of
-
-WINDOWS_PER_TASK = 12   # derived: windows of 20 m that a worker process is given together: at everyday density half a second of its time
+from .windows import Burn, PaintSource, burn_points, marking_mask, paint_of_window
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
@@ -76,7 +67,7 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
     items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
-    length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
+    length = WINDOW_UNITS * COORDINATE_SCALE
     progress.info(scatter.summary(length))
     if photographed := length * sum(len(scatter.photographed_windows(road)) for road in road_points.roads()):
         progress.warn(f"Along {photographed:.0f} m neighbouring points are as alike as in photographs. Paint is compared with the ground around each "
@@ -89,154 +80,3 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
         if burn is not None:
             burn(x, y)
     return paint
-
-
-# The scatter of single points of each scanner on asphalt decides whether the scanner is noisy: half of asphalt's intensity under multi-beam
-# scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
-
-MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
-SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
-
-WindowKey = tuple[int, int]   # road, number of the window
-
-
-@dataclass(frozen=True)
-class ScannerScatter:
-    """How single points of each scanner scatter on asphalt.
-
-    shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
-        out, and are taken for not noisy
-    points : {(road, window): (scanners,) points of each scanner}
-    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
-        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two
-    """
-
-    shares: dict[int, float]
-    points: dict[WindowKey, np.ndarray]
-    differences: dict[int, float] = field(default_factory=dict)
-
-    @property
-    def noisy(self) -> list[int]:
-        return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
-
-    def noisy_windows(self, road: int) -> set[int]:
-        """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
-        return self._windows_of(road, self.noisy)
-
-    def photographed_windows(self, road: int) -> set[int]:
-        """The windows of a road in which the brightness of most points is that of photographs."""
-        return self._windows_of(road, [scanner for scanner, ratio in self.differences.items() if ratio < ASPHALT.photographed])
-
-    def _windows_of(self, road, scanners):
-        """The windows of a road in which most points are of some scanners."""
-        return {window for (of, window), count in self.points.items()
-                if of == road and 2 * sum(count[k] for k in scanners if k < len(count)) > count.sum()}
-
-    def summary(self, length: float) -> str:
-        """A sentence for a log; `length` is that of a window, metres."""
-        if not self.shares:
-            return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
-        listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
-        text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
-        windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
-        filled = sum(bool(count.sum()) for count in self.points.values())
-        if not windows:
-            return text + " Paint is searched for in the image."
-        if windows == filled:
-            return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
-                           "found.")
-        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
-                       "averages, as elongated pieces and rows of dashes; other markings are not found.")
-
-
-def scanner_scatter(road_points: RoadPoints) -> Work:
-    """The work that looks at the ScannerScatter of all roads of a survey."""
-    windows = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
-    sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
-    roads = {road for road, _ in sampled}
-    sampled |= {key for key in windows if key[0] not in roads}
-    length = THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE
-    phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
-                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item],
-                  listed=WINDOWS_PER_TASK)
-    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0)
-    counts = {key: count for key, (count, _) in zip(windows, measured)}
-    squares = [entry for _, entry in measured if entry is not None]
-    shares = _shares(squares)
-    missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
-    missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
-    if missed:
-        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
-    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts,
-                          _shares(squares, 3))
-
-
-def scatter_of_windows(road_points: RoadPoints,
-                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...] | None]]:
-    """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
-
-    Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
-    """
-    result = []
-    for road, window, sampled in windows:
-        points = points_of_rows(road_points, road, window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW)
-        result.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
-    return result
-
-
-def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
-    """Scanner, number of points, scatter as a share of asphalt's level and differences of neighbours as a share of the variance, (squares,) each,
-    of squares of 1 m seen by one scanner from one distance.
-
-    Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
-    Differences are NaN where few points have a neighbour in their cell of 4 cm.
-    """
-    if not len(points):
-        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0), np.empty(0)
-    points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
-    value, scanner = points.intensity, points.scanner
-    side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
-    square = np.zeros(len(value), np.int32)
-    # another pass is another distance
-    for key in (points.records["s"] // side, points.records["d"] // side, scanner, points.pass_number):
-        low, high = int(key.min()), int(key.max())
-        square *= high - low + 1
-        square += key.astype(np.int32) - low
-    order = order_by(value, square)
-    value = value[order].astype(float)
-    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
-    count = np.diff(np.r_[starts, len(value)])
-    starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
-    median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
-    lit = median > 0
-    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, value, order, starts[lit], count[lit] // 2)
-
-
-def _differences(points, value, order, starts, count):
-    """(squares,) mean squared difference of the values of points in one cell, by the variance of the square; NaN where few share a cell.
-
-    value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
-    """
-    if not len(count):
-        return np.empty(0)
-    square = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
-    keys = np.stack([square, *(points.records[key][order[place]] // CELL_UNITS for key in "sd")])
-    by_cell = np.lexsort(keys[::-1])
-    of = np.where((np.diff(keys[:, by_cell]) == 0).all(axis=0), square[1:], -1)
-    few = np.bincount(of + 1, minlength=len(count) + 1)[1:] < ASPHALT.min_neighbours
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = (ndimage.mean(np.diff(value[place][by_cell]) ** 2, of, range(len(count)))
-                 / ndimage.variance(value[place], square, range(len(count))))
-    return np.where(few, np.nan, ratio)
-
-
-def _shares(squares, place=2):
-    """{scanner: median} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
-    if not squares:
-        return {}
-    scanner, count, scatter = (np.concatenate([entry[k] for entry in squares]) for k in (0, 1, place))
-    known = np.isfinite(scatter)
-    scanner, count, scatter = scanner[known], count[known], scatter[known]
-    points = np.bincount(scanner, count)
-    return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}

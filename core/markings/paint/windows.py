@@ -17,6 +17,7 @@ import numpy as np
 from ...curves.robust import median
 from ...execution.phase import Recipe
 from ...intensity.image import state_about
+from ...intensity.scatter import WINDOW_UNITS
 from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
@@ -33,31 +34,17 @@ from .not_paint import RimBands, clear_pieces, edge_distance, raised_cells, rim_
 from .photographs import bright_spots
 from .settings import MarkingSettings
 
-THRESHOLD_WINDOW = 500   # derived: cells: thresholds are taken from 20 m of road
+THRESHOLD_WINDOW = WINDOW_UNITS // CELL_UNITS   # derived: cells: thresholds are taken from 20 m of road
 WINDOW_HALO = 100   # derived: cells: 4 m around a window that are read too, for asphalt, rims and runs that cross its ends
 MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
 Paint = tuple[Columns, np.ndarray, np.ndarray]   # points on paint; local x, y of the mask's pixels, if it is asked for
-Windows = tuple[int, int, int]   # number of a road, first and last + 1 number of its windows
-
-
-def windows_of(road_points: RoadPoints, road: int) -> range:
-    """Numbers of the windows of a road."""
-    start, end = road_points.store.span(road)
-    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / THRESHOLD_WINDOW)) for s in (start, end))
-    return range(first, last + 1)
 
 
 def points_of_rows(road_points: RoadPoints, road: int, first: int, last: int) -> Points:
     """Points of the rows of cells from `first` to before `last`."""
     return road_points.window(road, first * CELL_UNITS * COORDINATE_SCALE, last * CELL_UNITS * COORDINATE_SCALE)
-
-
-def place_of(road_points: RoadPoints, windows: Windows) -> str:
-    """What messages call windows of a road."""
-    road, *ends = windows
-    return road_points.survey.stretch(road, *(number * THRESHOLD_WINDOW * CELL_UNITS * COORDINATE_SCALE for number in ends))
 
 
 class PaintSource:

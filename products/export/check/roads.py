@@ -219,7 +219,6 @@ class _Links:
     def __init__(self, whole: OpenDriveMap, findings: Findings) -> None:
         self.whole, self.findings, self.network = whole, findings, LaneNetwork(whole)
         self.known = {junction.id for junction in whole.junctions}
-        self.touched = self.network.touched()
         self.ends: dict[tuple[LaneKey, str], tuple[np.ndarray, np.ndarray, float]] = {}
 
     def place(self, road: MapRoad, end: str) -> np.ndarray:
@@ -265,6 +264,9 @@ class _Links:
             seen.add(junction.id)
             for connection in junction.connections:
                 self._connection(junction.id, connection)
+            ways = {id for connection in junction.connections for id in (connection.incoming, connection.connecting)}
+            for id in dict.fromkeys(id for pair in junction.priorities for id in pair if id not in ways):
+                self.findings.add("connection", f"junction {junction.id}", f"A priority names road {id}, which is not part of it.", np.zeros(3))
 
     def _inside(self, road, reached):
         """A road of a junction leads somewhere at both ends, and is one of (junction, road) that connections name."""
@@ -301,7 +303,7 @@ class _Links:
                     continue
                 self._joined(name, key, end, corners, neighbour, neighbour_end, target, driven)
             declared = end in lane.data.get(OPEN_END, "").split()
-            if self.network.is_open(key, end, self.touched) and not declared and np.hypot(*(corners[0] - corners[1])[:2]) > LEAST_LANE:
+            if self.network.is_open(key, end) and not declared and np.hypot(*(corners[0] - corners[1])[:2]) > LEAST_LANE:
                 fault = "dead end" if end == road.way_out(key[2]) else "no way in"
                 self.findings.add(fault, name, f"At its {end} it is linked to no driven lane.", corners[0])
 

@@ -11,6 +11,7 @@ import numpy as np
 from ....core.common.arrays import linked_groups
 from ....core.common.progress import Progress
 from ....core.common.setting import Limited, setting
+from ..right_of_way import rights_of_way
 from ..shared_borders import with_driven_middles
 from ..sources import NearestValues, RoadMapSource, is_stated, sigma_of_lanes
 from .geometry import Cubics
@@ -75,6 +76,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
         progress.report(0.5 + 0.5 * number / len(strips))
     whole.roads = [road.road for road in roads]
     notes = drafting.notes + _link_roads(whole, roads) + _said_open_ends(whole)
+    _add_priorities(whole, source)
     add_objects(whole, source.markings, source.signals, origin)
     return _OpenDriveDraft(whole, notes)
 
@@ -218,11 +220,10 @@ class _Drafting:
 def _said_open_ends(whole: OpenDriveMap) -> list[str]:
     """Say in the file at which ends a driven lane goes on nowhere though its road does; notes for the user."""
     network, count = LaneNetwork(whole), 0
-    touched = network.touched()
     for road in whole.roads:
         for number, section in enumerate(road.sections):
             for id, lane in section.lanes.items():
-                ends = [end for end in ("start", "end") if id and network.is_open((road.id, number, id), end, touched)]
+                ends = [end for end in ("start", "end") if id and network.is_open((road.id, number, id), end)]
                 if ends:
                     lane.data[OPEN_END] = " ".join(ends)
                     count += len(ends)
@@ -396,3 +397,14 @@ def _connect(whole, drafts, touches, junction):
     for road in whole.roads:
         road.links = {end: link for end, link in road.links.items() if link.element != "junction" or link.id in known}
         road.junction = road.junction if road.junction in known else "-1"
+
+
+def _add_priorities(whole, source):
+    """Say in the junctions which of the ways through them goes first."""
+    ways = {lane.data.get(LANE_ID): road for road in whole.roads if road.junction != "-1" for section in road.sections
+            for lane in section.lanes.values()}
+    junctions = {junction.id: junction for junction in whole.junctions}
+    for right in rights_of_way(source):
+        for low, high in [[ways.get(source.lanes.lane_id[row]) for row in pair] for pair in right.conflicts]:
+            if low and high and low.junction == high.junction and (high.id, low.id) not in junctions[low.junction].priorities:
+                junctions[low.junction].priorities.append((high.id, low.id))

@@ -156,11 +156,12 @@ class Connection(NamedTuple):
 
 @dataclass
 class Junction:
-    """A junction with its connections."""
+    """A junction with its connections. priorities : (id of the road that goes first, id of the one that waits), ways through it or roads into it."""
 
     id: str
     name: str = ""
     connections: list[Connection] = field(default_factory=list)
+    priorities: list[tuple[str, str]] = field(default_factory=list)
 
 
 @dataclass
@@ -236,27 +237,32 @@ class LaneNetwork:
         linked = self.roads.get(road)
         return road, len(linked.sections) - 1 if contact == "end" and linked is not None else 0, number
 
-    def touched(self) -> set[tuple[LaneKey, str]]:
-        """(lane, which of its ends) of all that any lane is linked to."""
-        lanes = [(road.id, number, id) for road in self.roads.values() for number, section in enumerate(road.sections) for id in section.lanes if id]
-        return {lane_end for key in lanes for end in ("start", "end") for lane_end in self.touching(key, end)}
+    @cached_property
+    def touched(self) -> dict[tuple[LaneKey, str], list[tuple[LaneKey, str]]]:
+        """(lane, which of its ends) of all that any lane is linked to -> those lanes and their ends."""
+        touched = defaultdict(list)
+        for road in self.roads.values():
+            for key in [(road.id, number, id) for number, section in enumerate(road.sections) for id in section.lanes if id]:
+                for end in LINK_NAMES:
+                    for lane_end in self.touching(key, end):
+                        touched[lane_end].append((key, end))
+        return dict(touched)
 
-    def is_open(self, key: LaneKey, end: str, touched: set[tuple[LaneKey, str]]) -> bool:
-        """Whether a driven lane is linked to no driven lane at an end, although its road goes on there.
-
-        touched : as above; roads that leave a junction are named by its connecting roads alone
-        """
+    def is_open(self, key: LaneKey, end: str) -> bool:
+        """Whether a driven lane is linked to no driven lane at an end, although its road goes on there."""
         road, touching = self.roads[key[0]], self.touching(key, end)
-        if not self.driven(key) or any(self.driven(neighbour) for neighbour, _ in touching) or not touching and (key, end) in touched:
+        if not self.driven(key) or any(self.driven(neighbour) for neighbour, _ in touching) or not touching and (key, end) in self.touched:
             return False
         link = road.links.get(end)
         return 0 <= key[1] + STEP[end] < len(road.sections) or link is not None and (
             link.element == "junction" and link.id in self.junctions or link.id in self.roads)
 
     def following(self, key: LaneKey) -> list[LaneKey]:
-        """The driven lanes that a driven lane leads to, in the direction of travel."""
+        """The driven lanes that a driven lane leads to, in the direction of travel, as it says or they say."""
+        end = self.roads[key[0]].way_out(key[2])
+        linked = dict.fromkeys((*self.touching(key, end), *self.touched.get((key, end), ())))
         # what ends where ours ends is no way on
-        return [neighbour for neighbour, neighbour_end in self.touching(key, self.roads[key[0]].way_out(key[2]))
+        return [neighbour for neighbour, neighbour_end in linked
                 if self.driven(neighbour) and neighbour_end != self.roads[neighbour[0]].way_out(neighbour[2])]
 
     def driven(self, key: LaneKey) -> bool:

@@ -168,7 +168,8 @@ def _junction(element):
     # a direct junction links roads without a road between
     return Junction(element.get("id"), element.get("name"), [
         Connection(child.get("id"), child.get("incomingRoad"), child.get("connectingRoad") or child.get("linkedRoad"), child.get("contactPoint"),
-                   [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]) for child in element.all("connection")])
+                   [(int(link.number("from")), int(link.number("to"))) for link in child.all("laneLink")]) for child in element.all("connection")],
+        [(child.get("high"), child.get("low")) for child in element.all("priority")])
 
 
 # Writing.
@@ -217,8 +218,11 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
                 _add_section(rows, lines, edges, whole, network, surface, number, numbers[road.id], faults)
         progress.report((count + 1) / len(whole.roads))
     lane_ids = {row["lane_id"] for row in rows}
-    for row in rows:   # what follows may be no lane of ours
+    first = _first_at_junctions(whole)
+    for row in rows:   # what follows or goes first may be no lane of ours
         row["successors"] = [name for name in row["successors"] if name in lane_ids]
+        if names := [name for name in first.get(row["lane_id"], ()) if name in lane_ids]:
+            row["known"]["yields_to"] = ",".join(names)
     notes = list(_said(**faults))
     if whole.problems:
         line, text = whole.problems[0]
@@ -226,6 +230,22 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     return RoadMapSource.of_map(
         Lanes.of_pieces(rows, crs), lines, edges, outlines_of(whole), notes=notes, signals=signals_of(whole, crs),
         attributes={row["lane_id"]: row["known"] for row in rows if row["known"]}, left_out=left_out_of(whole))
+
+
+def _first_at_junctions(whole):
+    """lane_id of a way through a junction -> {lane_id: None} of those that go first: priorities name these roads or those that lead to them."""
+    first = defaultdict[str, dict[str, None]](dict)
+    for junction in whole.junctions:
+        ways = defaultdict[str, list[str]](list)
+        for connection in junction.connections:
+            road = whole.road(connection.connecting)
+            section = len(road.sections) - 1 if road is not None and connection.contact == "end" else 0
+            for id in (connection.connecting, connection.incoming) if road is not None else ():
+                ways[id] += [road.lane_name(lane, section) for _, lane in connection.lanes]
+        for high, low in junction.priorities:
+            for name in ways[low]:
+                first[name] |= dict.fromkeys(ways[high])
+    return first
 
 
 def _said(jumps=(), folds=(), negative=()):

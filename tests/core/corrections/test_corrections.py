@@ -258,3 +258,8 @@ def test_a_lane_is_drawn_as_it_is_driven_and_has_the_width_of_the_others(way):
     assert np.sign((left - right)[:, 1]).tolist() == [way] * len(left)
     np.testing.assert_allclose(np.abs(left - right)[:, 1], 3.5, atol=0.01)
     assert lanes.lane[k] == 3 and lanes.lane_id[k] == "0.3.1"
+
+
+def test_a_row_that_says_that_something_was_seen_asks_for_nothing():
+    rows = corrections_from_features(layer_of(("seen", "surface", along(0, 20, 0)), ("delete", "edge", along(0, 20, 3))), Street().frame).rows
+    assert [(row.row, row.action) for row in rows] == [(2, "delete")], "rows keep their numbers"

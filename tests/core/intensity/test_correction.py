@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.progress import Progress
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.asphalt_model import UNKNOWN_DISTANCE, VehicleDistances
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
@@ -62,6 +62,18 @@ def road_points(records, section_length=20.0):
 def corrected(records, frame=None, settings=IntensitySettings(), section_length=20.0):
     found, report = correct_intensity(road_points(records, section_length), frame or straight_drive(), settings)
     return found.all_points(), report
+
+
+@pytest.mark.parametrize("photographs", [True, False])
+def test_brightness_of_photographs_stays_as_it_is_wherever_the_vehicle_drove_and_a_scanner_s_own_is_corrected(photographs):
+    records, across, _ = street()
+    grain = np.random.default_rng(1).normal(0, 400, (2000, 400))
+    pixel = grain[(records["s"] // 400).astype(int), (records["d"] // 400 + 200).astype(int)]
+    by_point = np.random.default_rng(2).normal(0, 400, len(records))
+    records["intensity"] = np.rint(4000 + 200 * across + (pixel if photographs else by_point))
+    points, report = corrected(records)
+    assert ("photographs" in report.reason) == photographs
+    assert np.isnan(points.corrected).all() == photographs
 
 
 def levels(points, value, paint):
@@ -208,20 +220,10 @@ def test_an_unknown_scale_is_refused():
         IntensitySettings(scale="decibel")
 
 
-class Listener(Progress):
-    """Keeps what a user is warned of."""
-
-    def __init__(self):
-        self.warnings = []
-
-    def warn(self, text):
-        self.warnings.append(text)
-
-
 def warned(records):
-    listener = Listener()
-    _, report = correct_intensity(road_points(records), straight_drive(), progress=listener)
-    return listener.warnings, report
+    heard = Heard()
+    _, report = correct_intensity(road_points(records), straight_drive(), progress=heard)
+    return heard.warned, report
 
 
 @pytest.mark.parametrize("scanners", [1, 2])

@@ -78,6 +78,17 @@ def test_linked_lanes_that_miss_each_other_by_a_hand_are_linked_and_stay_where_t
     assert np.isclose(sorted(layers.lanes.width), [3.5, 3.7], atol=0.01).all()
 
 
+def test_lanes_that_part_and_miss_their_lane_by_different_widths_are_all_linked(tmp_path):
+    both = '<predecessor id="-1"/><successor id="-1"/>'
+    roads = [road(geometry(0, x, 0, 0, 40), 40, id, lanes=section(lane(-1, width=width, link=both)),
+                  link='<predecessor elementType="road" elementId="1" contactPoint="end"/>' * (id != "1"))
+             for id, x, width in (("1", 0, 3.5), ("2", 40, 3.7), ("3", 40, 3.8))]
+    given = layers_of_opendrive(read_opendrive(written(tmp_path, opendrive(roads))), CRS).lanes
+    draft, layers = lanelets_of(tmp_path, given)
+    name = dict(zip(layers.lanes.lane_id, (lanelet.name for lanelet in draft.lanelets)))
+    assert links(layers.lanes, name.get) == {("1.-1.0", "2.-1.0"), ("1.-1.0", "3.-1.0")} and draft.unmet == 0
+
+
 def test_what_cannot_be_said_of_links_is_counted(tmp_path):
     apart = [road(geometry(0, x, 0, 0, 40), 40, id, lanes=section(lane(-1, link='<predecessor id="-1"/><successor id="-1"/>')), link=link)
              for id, x, link in (("1", 0, '<successor elementType="road" elementId="2" contactPoint="start"/>'),

@@ -108,6 +108,18 @@ def test_lanes_lead_on_through_sections_roads_and_junctions(tmp_path):
     assert dict(zip(lanes.lane_id, lanes.type))["2.-1.0"] == "connector"
 
 
+@pytest.mark.parametrize("says", ["1", "2"])
+def test_a_link_that_one_of_two_lanes_says_is_one(tmp_path, says):
+    link = {"1": '<successor elementType="road" elementId="2" contactPoint="start"/>',
+            "2": '<predecessor elementType="road" elementId="1" contactPoint="end"/>'}
+    of_lanes = {"1": '<successor id="{0}"/>', "2": '<predecessor id="{0}"/>'}
+    roads = [road(geometry(0, x, 0, 0, 40), 40, id, link=link[id] * (id == says),
+                  lanes=street_section(0, [of_lanes[id].format(lane) * (id == says) for lane in (1, -1)])) for id, x in (("1", 0), ("2", 40))]
+    lanes = layers(tmp_path, *roads).lanes
+    follows = dict(zip(lanes.lane_id, lanes.successors))
+    assert follows["1.-1.0"] == ("2.-1.0",) and follows["2.1.0"] == ("1.1.0",)
+
+
 def test_a_curb_is_a_road_edge_at_its_foot(tmp_path):
     edges = layers(tmp_path, road(geometry(0, 0, 0, 0, 40), 40)).road_edges
     assert len(edges) == 1 and edges.rows[0]["side"] == "right"

@@ -1,0 +1,191 @@
+"""How single points of each scanner scatter on asphalt: whether it is noisy, and whether its brightness is that of photographs.
+
+Half of asphalt's intensity under multi-beam scanners, a sixth under mirror scanners. A scanner is judged by all roads of a survey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import ndimage
+
+from ..common.arrays import order_by
+from ..execution.in_step import Asked, Work
+from ..execution.phase import Phase
+from ..survey.store.records import COORDINATE_SCALE, Points
+from ..survey.store.road_points import RoadPoints
+from .asphalt_model import LOWER_QUANTILE
+from .weights import ASPHALT, IMAGE
+
+WINDOW_UNITS = round(IMAGE.ranking_window / COORDINATE_SCALE)   # derived: units of road whose points are judged together
+WINDOWS_PER_TASK = 12   # derived: windows that a worker process is given together: at everyday density half a second of its time
+MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
+SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
+
+WindowKey = tuple[int, int]   # road, number of the window
+
+
+@dataclass(frozen=True)
+class ScannerScatter:
+    """How single points of each scanner scatter on asphalt.
+
+    shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
+        out, and are taken for not noisy
+    points : {(road, window): (scanners,) points of each scanner}
+    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
+        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two
+    """
+
+    shares: dict[int, float]
+    points: dict[WindowKey, np.ndarray]
+    differences: dict[int, float] = field(default_factory=dict)
+
+    @property
+    def noisy(self) -> list[int]:
+        return [scanner for scanner, share in sorted(self.shares.items()) if share > ASPHALT.noisy_scatter]
+
+    @property
+    def photographed(self) -> list[int]:
+        return [scanner for scanner, ratio in sorted(self.differences.items()) if ratio < ASPHALT.photographed]
+
+    def noisy_windows(self, road: int) -> set[int]:
+        """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
+        return self._windows_of(road, self.noisy)
+
+    def photographed_windows(self, road: int) -> set[int]:
+        """The windows of a road in which the brightness of most points is that of photographs."""
+        return self._windows_of(road, self.photographed)
+
+    def _windows_of(self, road, scanners):
+        """The windows of a road in which most points are of some scanners."""
+        return {window for (of, window), count in self.points.items()
+                if of == road and 2 * sum(count[k] for k in scanners if k < len(count)) > count.sum()}
+
+    def summary(self, length: float) -> str:
+        """A sentence for a log; `length` is that of a window, metres."""
+        if not self.shares:
+            return "The scatter of intensities on asphalt is not known, there are too few road points: paint is searched for in the image."
+        listed = ", ".join(f"{100 * share:.0f} % (scanner {scanner})" for scanner, share in sorted(self.shares.items()))
+        text = f"Intensities on asphalt scatter by {listed}; more than {100 * ASPHALT.noisy_scatter:.0f} % is noisy."
+        windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
+        filled = sum(bool(count.sum()) for count in self.points.values())
+        if not windows:
+            return text + " Paint is searched for in the image."
+        if windows == filled:
+            return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
+                           "found.")
+        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
+                       "averages, as elongated pieces and rows of dashes; other markings are not found.")
+
+
+def windows_of(road_points: RoadPoints, road: int) -> range:
+    """Numbers of the windows of a road."""
+    start, end = road_points.store.span(road)
+    first, last = (int(np.floor(s / COORDINATE_SCALE / WINDOW_UNITS)) for s in (start, end))
+    return range(first, last + 1)
+
+
+def place_of(road_points: RoadPoints, windows: tuple[int, int, int]) -> str:
+    """What messages call the windows of a road from a first to before a last number."""
+    road, *ends = windows
+    return road_points.survey.stretch(road, *_stations(*ends))
+
+
+def _stations(*windows):
+    """Stations, m, at which windows begin."""
+    return [window * WINDOW_UNITS * COORDINATE_SCALE for window in windows]
+
+
+def scanner_scatter(road_points: RoadPoints) -> Work:
+    """The work that looks at the ScannerScatter of all roads of a survey."""
+    windows = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
+    sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
+    roads = {road for road, _ in sampled}
+    sampled |= {key for key in windows if key[0] not in roads}
+    length = WINDOW_UNITS * COORDINATE_SCALE
+    phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
+                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item],
+                  listed=WINDOWS_PER_TASK)
+    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0)
+    counts = {key: count for key, (count, _) in zip(windows, measured)}
+    squares = [entry for _, entry in measured if entry is not None]
+    shares = _shares(squares)
+    missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
+    missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
+    if missed:
+        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
+    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts,
+                          _shares(squares, 3))
+
+
+def scatter_of_windows(road_points: RoadPoints,
+                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...] | None]]:
+    """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
+
+    Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
+    """
+    result = []
+    for road, window, sampled in windows:
+        points = road_points.window(road, *_stations(window, window + 1))
+        result.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
+    return result
+
+
+def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
+    """Scanner, number of points, scatter as a share of asphalt's level and differences of neighbours as a share of the variance, (squares,) each,
+    of squares of 1 m seen by one scanner from one distance.
+
+    Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
+    Differences are NaN where few points have a neighbour in their cell of 4 cm.
+    """
+    if not len(points):
+        return np.empty(0, np.uint8), np.empty(0, int), np.empty(0), np.empty(0)
+    points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
+    value, scanner = points.intensity, points.scanner
+    side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
+    square = np.zeros(len(value), np.int32)
+    # another pass is another distance
+    for key in (points.records["s"] // side, points.records["d"] // side, scanner, points.pass_number):
+        low, high = int(key.min()), int(key.max())
+        square *= high - low + 1
+        square += key.astype(np.int32) - low
+    order = order_by(value, square)
+    value = value[order].astype(float)
+    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
+    count = np.diff(np.r_[starts, len(value)])
+    starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
+    median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
+    lit = median > 0
+    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, value, order, starts[lit], count[lit] // 2)
+
+
+def _differences(points, value, order, starts, count):
+    """(squares,) mean squared difference of the values of points in one cell, by the variance of the square; NaN where few share a cell.
+
+    value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
+    """
+    if not len(count):
+        return np.empty(0)
+    square = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
+    keys = np.stack([square, *(points.records[key][order[place]] // ASPHALT.pixel for key in "sd")])
+    by_cell = np.lexsort(keys[::-1])
+    of = np.where((np.diff(keys[:, by_cell]) == 0).all(axis=0), square[1:], -1)
+    few = np.bincount(of + 1, minlength=len(count) + 1)[1:] < ASPHALT.min_neighbours
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = (ndimage.mean(np.diff(value[place][by_cell]) ** 2, of, range(len(count)))
+                 / ndimage.variance(value[place], square, range(len(count))))
+    return np.where(few, np.nan, ratio)
+
+
+def _shares(squares, place=2):
+    """{scanner: median} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
+    if not squares:
+        return {}
+    scanner, count, scatter = (np.concatenate([entry[k] for entry in squares]) for k in (0, 1, place))
+    known = np.isfinite(scatter)
+    scanner, count, scatter = scanner[known], count[known], scatter[known]
+    points = np.bincount(scanner, count)
+    return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}

@@ -1,0 +1,68 @@
+"""Who waits for whom at the junctions of a map: as the lanes state it, else as the signs before them say."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from .shared_borders import WIDEST_DOUBLE
+from .sources import RoadMapSource
+
+GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH", "3.01"), ("CH", "3.02"), ("FR", "AB3a"), ("FR", "AB4"),
+            ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
+
+
+class _RightOfWay(NamedTuple):
+    """waiting, first : lane_ids; signs : rows of the layer SIGNALS that say so; conflicts : (row of a way through the junction that waits, row of
+    one that goes first) of ways that cross."""
+
+    waiting: list[str]
+    first: list[str]
+    signs: list[int]
+    conflicts: list[tuple[int, int]]
+
+
+def named(text: object) -> list[str]:
+    """The lane_ids in a field that holds several."""
+    return [name for part in str(text or "").split(",") if (name := part.strip())]
+
+
+def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
+    """One for each group of lanes that wait for the same ones; of lanes that state nothing, one for each sign at which they give way.
+
+    Before a sign go the lanes whose ways through the junction cross theirs and that have no such sign.
+    """
+    lanes = source.lanes
+    rows = {name: k for k, name in enumerate(lanes.lane_id)}
+    crosses = lanes.type == "connector"
+    ways = {name: [k] if crosses[k] else [rows[after] for after in lanes.successors[k] if after in rows and crosses[rows[after]]]
+            for name, k in rows.items()}
+    area = {k: shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2]))
+            for k in np.flatnonzero(crosses).tolist() for left, right in [lanes.borders(k)]}
+
+    def conflicts(names, first):
+        # of two lanes that lead to several ways, those that cross by more than the stripe that neighbours have between them
+        return [(k, j) for name in names for other in first for k in ways[name] for j in ways[other]
+                if crosses[rows[name]] and crosses[rows[other]] or area[k].buffer(-WIDEST_DOUBLE).intersects(area[j])]
+
+    stated: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for name, known in source.attributes.items():
+        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows)):
+            stated[first].append(name)
+    signs = {number: [name for name in named(row.get("lanes")) if ways.get(name)]
+             for number, row in enumerate(source.signals.rows if source.signals else ()) if (row.get("country"), row.get("code")) in GIVE_WAY}
+    rights = [(names, first, [number for number, at in signs.items() if _meet(ways, names, at)]) for first, names in stated.items()]
+    at_signs = {name for names in signs.values() for name in names}
+    others = sorted(name for name, k in rows.items() if not crosses[k] and name not in at_signs)
+    for number, names in signs.items():
+        if names := [name for name in names if not any(_meet(ways, [name], waiting) for waiting in stated.values())]:
+            rights.append((names, [other for other in others if conflicts(names, [other])], [number]))
+    return [_RightOfWay(list(names), list(first), number, conflicts(names, first)) for names, first, number in rights if first]
+
+
+def _meet(ways, names, others):
+    """Whether two groups of lanes have a way through a junction in common."""
+    return not {k for name in names for k in ways[name]}.isdisjoint(k for name in others for k in ways[name])
