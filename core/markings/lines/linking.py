@@ -218,7 +218,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
 
 
 def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> LinkedLine:
-    """The line less short strands that lie off the course of the paint before and after them, be that with the other lines, on the road or along an edge."""
+    """The line less short strands off the course of the paint before and after them, be that with the other lines, on the road or along an edge."""
     if len(line.strands) < 3:
         return line
     s, d, _, weight = line.places
