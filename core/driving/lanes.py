@@ -43,7 +43,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
 
 def _as_elsewhere(track, boundaries, estimate):
-    """The track moved to where it was driven as along most of it, where a painted border leads farther aside than lanes are wide, or of a hatched area.
+    """The track moved to where it was driven as along most of it, where one painted border leads far aside, or is of a hatched area.
 
     That border is then of what opens or closes beside the lane, which goes on beside the other one, as wide as elsewhere. This is as rare as a border
     without a line, but a drive farther off the middle than vehicles scatter is rarer.
