@@ -363,10 +363,10 @@ def _islands(curbs):
     """Outlines of the islands of CrossSections, whose sides share a number."""
     of_island = np.array(curbs.kinds, object)[curbs.d.spans.owner] == "island"
     number, station, d = (values[of_island & np.isfinite(curbs.d.values)] for values in (curbs.number.values, curbs.d.spans.station, curbs.d.values))
-    return [area_between(curbs.s[station[number == island]], d[number == island]) for island in np.unique(number)]
+    return [_area_between(curbs.s[station[number == island]], d[number == island]) for island in np.unique(number)]
 
 
-def area_between(s: np.ndarray, d: np.ndarray) -> shapely.Polygon:
+def _area_between(s, d):
     """The area between the least and the greatest offset at each station, of (N,) places."""
     stations, of = np.unique(s, return_inverse=True)
     low, high = np.full(len(stations), np.inf), np.full(len(stations), -np.inf)
