@@ -116,7 +116,7 @@ def _parallel_lanes(longest, tracks, waiting, spans):
 
     Returns (index, offset from the axis) of each, (N,) offset of the common axis, and the grid station that this begins at.
     """
-    common = _CommonAxis(tracks[longest])
+    common = _CommonAxis(tracks[longest], spans.stations)
     members = [(longest, common.offset)]
     waiting.remove(longest)
     added = True
@@ -140,45 +140,36 @@ def _parallel_lanes(longest, tracks, waiting, spans):
                     if neighbour > k and neighbour in waiting and neighbour not in queued:
                         heappush(queue, neighbour)
                         queued.add(neighbour)
-    return members, common.total[common.low - common.first:common.high + 1 - common.first] / \
-        common.weight[common.low - common.first:common.high + 1 - common.first], common.low
+    reach = slice(common.low, common.high + 1)
+    return members, common.total[reach] / common.weight[reach], common.low
 
 
 class _CommonAxis:
     """The weighted mean of the offsets of parallel lanes, each less its own offset from the axis, from grid station `low` to `high`.
 
-    total, weight : of the stations from `first` on
+    total, weight : (K,) of all stations of the road
     """
 
-    def __init__(self, track):
-        self.first = self.low = track.first
+    def __init__(self, track, stations):
         # rounded, as are those of others, so that a lane that is corrected somewhere moves the axis of a long road nowhere else
-        self.high, self.offset = track.last, round(float(np.median(track.d)), 1)
-        self.total, self.weight = np.zeros((2, len(track)))
+        self.low, self.high, self.offset = track.first, track.last, round(float(np.median(track.d)), 1)
+        self.total, self.weight = np.zeros(stations), np.zeros(stations)
         self.add(track, self.offset)
 
     def add(self, track, offset):
         self.low, self.high = min(self.low, track.first), max(self.high, track.last)
-        before, behind = max(self.first - track.first, 0), max(track.last + 1 - self.first - len(self.total), 0)
-        if before or behind:
-            # as much again, so that a long axis is not copied for every lane of it
-            room = [max(more, len(self.total)) if more else 0 for more in (before, behind)]
-            self.total, self.weight = (np.pad(values, room) for values in (self.total, self.weight))
-            self.first -= room[0]
-        window = slice(track.first - self.first, track.last + 1 - self.first)
         # a bridged place says little, but more than nothing where it is alone
         w = np.where(track.status == BRIDGED, 1e-3, 1.0)
-        self.total[window] += w * (track.d - offset)
-        self.weight[window] += w
+        self.total[track.stations] += w * (track.d - offset)
+        self.weight[track.stations] += w
 
     def offset_of(self, track):
         """By how much a lane lies beside the axis; None where it is not parallel to it, or where they hardly run together."""
-        begin, end = max(track.first, self.first), min(track.last + 1, self.first + len(self.total))
-        of_axis, of_track = slice(begin - self.first, end - self.first), slice(begin - track.first, end - track.first)
-        shared = self.weight[of_axis] > 0
+        total, weight = self.total[track.stations], self.weight[track.stations]
+        shared = weight > 0
         if shared.sum() * STATION_STEP < min(ALIGNMENT.min_shared_lane_length, 0.5 * len(track) * STATION_STEP):
             return None
-        apart = track.d[of_track][shared] - self.total[of_axis][shared] / self.weight[of_axis][shared]
+        apart = track.d[shared] - total[shared] / weight[shared]
         offset = round(float(np.median(apart)), 2)
         return None if np.percentile(np.abs(apart - offset), 95) > ALIGNMENT.max_parallel_deviation else offset
 

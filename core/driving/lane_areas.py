@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -235,46 +234,42 @@ NO_BORDER = "none", "none", ""        # line, kind and pattern
 def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame, number: int) -> list[dict[str, Any]]:
     """Rows of Lanes along the drive from the end of a lane to the beginning of the next one of its direction on the same road."""
     driven, directions = driven_offsets(frame, number, s)
-    rows, lane = [], len(tracks)
+    rows: list[dict[str, Any]] = []
     for way in (1, -1):
-        ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
-        begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
-        by_station = sorted(range(len(begins)), key=lambda k: begins[k][2])
-        stations, reach = [begins[k][2] for k in by_station], int(AREAS.longest_connector / STATION_STEP)
-        for before, z_before, a in ends:
+        of_way = [(track, z) for track, z in zip(tracks, heights) if track.direction == way]
+        ends, begins = (np.array([track.last if last else track.first for track, _ in of_way], int) for last in (way > 0, way < 0))
+        for before, a in zip(of_way, ends.tolist()):
+            gap = way * (begins - a) * STATION_STEP
+            ahead = [k for k in np.argsort(gap, kind="stable").tolist() if AREAS.next_lane_gap < gap[k] < AREAS.longest_connector]
             for p in np.flatnonzero(directions == way).tolist():
-                if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
+                after = next((k for k in ahead if _drives_in(driven[p], of_way[k][0], begins[k])), None)
+                if after is None or not _drives_in(driven[p], before[0], a):
                     continue
-                candidates = sorted(by_station[slice(bisect_left(stations, a - reach), bisect_right(stations, a + reach))])
-                options = [(way * (b - a), after, z, b) for after, z, b in map(begins.__getitem__, candidates)
-                           if AREAS.next_lane_gap < way * (b - a) * STATION_STEP < AREAS.longest_connector
-                           and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
-                if not options:
-                    continue
-                _, after, z_after, b = min(options, key=lambda option: option[0])
-                low, high = sorted((a, b))
-                columns = np.arange(low, high + 1)
-                if not np.isfinite(driven[p, columns]).all():
-                    continue
-                lane += 1
-                area = _connector(before, after, a, b, columns, driven[p], s, (z_before, z_after), frame, number)
-                rows.append(area | dict(lane=lane))
-                break
+                columns = np.arange(a, begins[after] + way, way)
+                if np.isfinite(driven[p, columns]).all():
+                    area = _connector(before, of_way[after], columns, driven[p, columns], s, frame, number)
+                    rows.append(area | dict(lane=len(tracks) + len(rows) + 1))
+                    break
     return rows
 
 
-def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
-    share = _eased((columns - a) / (b - a))
-    ends = [track.at(k) for track, k in ((before, a), (after, b))]
-    offsets = [middle - driven[k] for (middle, _), k in zip(ends, (a, b))]
+def _drives_in(driven, track, at):
+    """Whether a pass, by its offset at each station, is in a lane at one of them."""
+    d, width = track.at(int(at))
+    return abs(driven[at] - d) < width / 2
+
+
+def _connector(before, after, columns, driven, s, frame, number):
+    """The row of Lanes from one lane to another, (track, local z) each, along those who drove between them at `columns`, in order of travel."""
+    share, way = _eased(np.linspace(0.0, 1.0, len(columns))), before[0].direction
+    (d_before, wide_before), (d_after, wide_after) = before[0].at(int(columns[0])), after[0].at(int(columns[-1]))
     # from the middle of the one lane to the middle of the other, along the drive between them
-    d = driven[columns] + offsets[0] * (1 - share) + offsets[1] * share
-    half = (ends[0][1] * (1 - share) + ends[1][1] * share) / 2
-    z = heights[0][a - before.first] * (1 - share) + heights[1][b - after.first] * share
-    sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + side * half), z]) for side in (1, -1)]
-    if before.direction < 0:
-        sides = [side[::-1] for side in sides[::-1]]
-    return _row(number, before, after, sides, half, station=float(s[columns[0]]), end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]))
+    d = driven + (d_before - driven[0]) * (1 - share) + (d_after - driven[-1]) * share
+    half = (wide_before * (1 - share) + wide_after * share) / 2
+    z = before[1][columns[0] - before[0].first] * (1 - share) + after[1][columns[-1] - after[0].first] * share
+    sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + way * side * half), z]) for side in (1, -1)]
+    (station, first), (end, last) = sorted((float(s[columns[k]]), float(d[k])) for k in (0, -1))
+    return _row(number, before[0], after[0], sides, half, station=station, end=end, first=first, last=last)
 
 
 def _eased(share):

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...common.arrays import Rows
 from ...countries.catalogue import NEUTRAL
 from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.records import FAR
@@ -146,7 +147,7 @@ def _made_of(pattern):
 
 
 @dataclass
-class Candidates:
+class Candidates(Rows):
     """Boundaries by interval, from left to right; the first and the last stand for what lies outside."""
 
     first: np.ndarray   # (I,) stations of the grid that an interval begins and ends with
@@ -172,10 +173,6 @@ class Candidates:
     def painted(self) -> np.ndarray:
         """(I, M) bool, whether a boundary is a painted line."""
         return self.made_of <= DOUBLE
-
-    def take(self, intervals: slice | np.ndarray) -> Candidates:
-        """Some of the intervals."""
-        return Candidates(**{name: values[intervals] for name, values in vars(self).items()})
 
     def at_end(self, end: int, which: np.ndarray) -> Candidates:
         """The boundaries where the intervals begin, 0, or where they end, 1, in those of them that are meant, (I,) bool."""

@@ -17,6 +17,8 @@ from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
     FIRST,
+    REST_FIRST,
+    REST_SECOND,
     SECOND,
     Sections,
     behind_best,
@@ -29,6 +31,7 @@ from .sequence import (
     probabilities,
     separated_kinds,
     strip_costs,
+    strips_before,
     transitions,
     ways,
 )
@@ -91,7 +94,7 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
             # from the last interval of which something is known it leads to the first such one beyond the stretch
             known = lined[first:last + (last > first)]
             end = max(part.stop, *(known[-1:] + 1).tolist(), 0)
-            piece = candidates.take(slice(part.start, end))
+            piece = candidates[part.start:end]
             # which rows of a table they are does not matter
             pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, end), first_direction, part.stop - part.start,
                            known - part.start, left[:, first:first + max(len(known) - 1, 0)]))
@@ -124,14 +127,14 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int,
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
     sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
-    return (sections.take(slice(count)), misnamed_costs(candidates, sections, weights)[:count],
+    return (sections[:count], misnamed_costs(candidates, sections, weights)[:count],
             transitions(candidates, sections, known, lane_width, left, weights))
 
 
 def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, weights):
     """The RoadEstimate of the most probable sequence of cross-sections of one road, of whose stretches `sections_of_stretch` gave the parts."""
     of_stretches, misnamed, of_gaps = zip(*parts)
-    sections, transition = Sections.joined(of_stretches), np.concatenate(of_gaps)
+    sections, transition = Sections.join(of_stretches), np.concatenate(of_gaps)
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     lined = np.flatnonzero(candidates.painted.any(1) | evidence.bare)
     choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
@@ -162,7 +165,7 @@ def _stretches(candidates):
 def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights):
     """Make cross-sections improbable, in place, that have not the lanes that an analyst took."""
     for interval, former, wanted in evidence.taken:
-        strips = lane_strips(sections.take(slice(interval, interval + 1)))
+        strips = lane_strips(sections[interval:interval + 1])
         lanes = _lanes(candidates, lane_width, first_direction, replace(strips, interval=strips.interval + interval))
         overlapping = np.abs(lanes.d - former) < SAME_LANE
         for d, width, _ in wanted:
@@ -194,6 +197,10 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     parts = (sections.strip == FIRST) & (kind_right == SECOND)
     drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
     cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
+    # what nobody drives on between lanes, as a median, parts the directions
+    before = strips_before(sections)
+    again = [((before == rest) & (sections.strip == lane)).sum(2) for rest, lane in ((REST_FIRST, FIRST), (REST_SECOND, SECOND))]
+    cost = cost + weights.median_within * (np.maximum(again[0] - 1, 0) + again[1])
     return cost * c.observations(weights)[:, None]
 
 
@@ -229,7 +236,7 @@ def _lane_spans(estimate, part):
     check_cancelled()
     spans = []
     c, strips = estimate.candidates, _strips_of(estimate, part)
-    borders = _uses(estimate.sections.take(part), estimate.choice[part])
+    borders = _uses(estimate.sections[part], estimate.choice[part])
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
     lanes = _lanes_of(estimate, strips)
     lane_rows, shares = _place_shares(estimate, lanes, best, part)
@@ -265,7 +272,7 @@ class _Lanes:
 
 def _strips_of(estimate, part):
     """The LaneStrips of all cross-sections of some intervals."""
-    strips = lane_strips(estimate.sections.take(part))
+    strips = lane_strips(estimate.sections[part])
     return replace(strips, interval=strips.interval + part.start)
 
 

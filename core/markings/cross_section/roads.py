@@ -9,11 +9,9 @@ import numpy as np
 import shapely
 
 from ...common.arrays import mask_runs
-from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
-from ...curves.robust import median
 from ...execution.phase import THREADS
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
 from ...survey.frame.placement import located
@@ -210,9 +208,8 @@ def _taken_on(taken, number, candidates, s):
 def _likely_ends(lines, width):
     """(2, K) metres, where the road would end beyond the outermost lines if it had one more lane there."""
     ends = np.full((2, len(lines.s)), np.nan)
-    for row, (first, end) in enumerate(zip(lines.d.spans.first, lines.d.spans.end)):
-        window, d = slice(first, end), lines.d.row(row)
-        ends[0, window], ends[1, window] = np.fmax(ends[0, window], d), np.fmin(ends[1, window], d)
+    np.fmax.at(ends[0], lines.d.spans.station, lines.d.values)
+    np.fmin.at(ends[1], lines.d.spans.station, lines.d.values)
     return ends + np.array([[width], [-width]])
 
 
@@ -232,24 +229,13 @@ def _usual_width(known, estimates, usual):
     """
     widths, lengths = [], []
     for number, estimate in estimates.items():
-        boundaries, candidates, _ = known[number]
-        strips = lane_strips(estimate.sections.chosen(estimate.choice))
-        sides = np.stack([candidates.rows[strips.interval, strips.left, 1], candidates.rows[strips.interval, strips.right, 0]])
-        first, count = candidates.first[strips.interval], candidates.last[strips.interval] + 1 - candidates.first[strips.interval]
-        end = np.cumsum(count)
-        of = np.repeat(np.arange(len(count)), count)
-        stations = np.arange(len(of)) + (first - end + count)[of]
-        apart = boundaries.d[sides[0, of], stations] - boundaries.d[sides[1, of], stations]
-        painted = boundaries.painted[sides]
-        edge = [np.bincount(of, boundaries.patterns[side[of], stations] == PAVEMENT, len(count)) > 0.5 * count for side in sides]
-        for k in np.flatnonzero((painted | edge).all(axis=0)).tolist():
-            check_cancelled()
-            of_strip = apart[end[k] - count[k]:end[k]]
-            of_strip = of_strip[~np.isnan(of_strip)]
-            width = median(of_strip) / strips.number[k] if len(of_strip) else np.nan
-            # beside the edge of the pavement a lane may be narrower than the strip
-            widths.append(width if painted[:, k].all() else min(width, usual))
-            lengths.append(STATION_STEP * int(count[k]))
+        c, strips = known[number][1], lane_strips(estimate.sections.chosen(estimate.choice))
+        left, right = ((strips.interval, side) for side in (strips.left, strips.right))
+        painted, edge = (np.stack([of[left], of[right]]) for of in (c.painted, c.made_of == PAVEMENT))
+        width, shown = (c.right[left] - c.left[right]) / strips.number, (painted | edge).all(axis=0)
+        # beside the edge of the pavement a lane may be narrower than the strip
+        widths += np.where(painted.all(axis=0), width, np.minimum(width, usual))[shown].tolist()
+        lengths += c.length[strips.interval][shown].tolist()
     if not lengths:
         return usual, False
     widths, lengths = np.append(widths, usual), np.append(lengths, ROADS.length_of_usual)

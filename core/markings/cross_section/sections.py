@@ -13,7 +13,7 @@ from ...common.parallel import check_cancelled
 from ...curves.robust import median
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
-from ...survey.frame.row_table import BLOCK, RowSpans, RowTable
+from ...survey.frame.row_table import RowSpans, RowTable
 from ...survey.store.records import STATION_STEP
 from ..weights import SECTIONS
 
@@ -223,15 +223,6 @@ class _GridLines:
 
     def __init__(self, s: np.ndarray, rows: list[_GridRow], names: list[str]) -> None:
         self.s, self.rows, self.names = s, rows, names
-        self._rows_of_block: dict[int, list[int]] = defaultdict(list)
-        for k, row in enumerate(rows):
-            for block in range(row.begin // BLOCK, row.end // BLOCK + 1):
-                self._rows_of_block[block].append(k)
-
-    def near(self, station: int, reach: int = 0) -> list[int]:
-        """Numbers of the rows that may be within `reach` stations of one, as the lines were when this was made, ascending."""
-        blocks = range((station - reach) // BLOCK, (station + reach) // BLOCK + 1)
-        return sorted({k for block in blocks for k in self._rows_of_block.get(block, ())})
 
     def tables(self) -> dict[str, RowTable]:
         """{name: (L, K)} of the columns, each row from where the line begins to where it ends."""
@@ -330,8 +321,7 @@ def _lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:
     """Where a double line goes on as a single one, as `joined` says, both of its lines lead over to it: lanes on either side end at that one."""
     for double_end, k, begin in leads:
         step = 1 if begin > double_end else -1
-        for other in lines.near(double_end, GAP_REACH):
-            row = lines.rows[other]
+        for other, row in enumerate(lines.rows):
             end = row.end if step > 0 else row.begin
             if other == k or "double" not in row.pattern or not 0 <= (double_end - end) * step <= GAP_REACH:
                 continue

@@ -6,12 +6,13 @@ the best sequence of them along the road.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import softmax
 
+from ...common.arrays import Rows
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
 from ...survey.store.records import BIN, FAR
@@ -313,7 +314,7 @@ _WRONG_SIDE = {(REST_SECOND, FIRST), (SECOND, FIRST)}
 
 
 @dataclass
-class Sections:
+class Sections(Rows):
     """The best cross-sections of each interval, the best one first."""
 
     cost: np.ndarray   # (I, K) nats; inf where there are fewer than K
@@ -323,19 +324,9 @@ class Sections:
     first_lanes: np.ndarray
     aside: np.ndarray   # (I, K, M) bool, whether its lane lies beside the border without paint
 
-    def take(self, intervals: slice | np.ndarray) -> Sections:
-        """Those of some intervals."""
-        return Sections(**{name: values[intervals] for name, values in vars(self).items()})
-
     def chosen(self, choice: np.ndarray) -> Sections:
         """One of each interval."""
-        rows = np.arange(len(choice))
-        return Sections(**{name: values[rows, choice][:, None] for name, values in vars(self).items()})
-
-    @staticmethod
-    def joined(parts: Sequence[Sections]) -> Sections:
-        """The cross-sections of intervals that follow each other."""
-        return Sections(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in vars(parts[0])})
+        return self[np.arange(len(choice))[:, None], choice[:, None]]
 
 
 @dataclass
@@ -360,11 +351,16 @@ def lane_strips(sections: Sections) -> LaneStrips:
 
 def separated_kinds(sections: Sections) -> np.ndarray:
     """(I, K, M) what each boundary separates, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
-    strip = sections.strip
-    before = np.full(strip.shape, -1, np.int8)
-    i, k, m = np.nonzero(strip >= 0)
-    before[i, k, sections.right[i, k, m]] = strip[i, k, m]
-    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], np.int8(-1))
+    before = strips_before(sections)
+    return np.where((sections.strip >= 0) & (before >= 0), SEPARATES[before, sections.strip], np.int8(-1))
+
+
+def strips_before(sections: Sections) -> np.ndarray:
+    """(I, K, M) the kind of the strip to the left of each boundary; -1 where it bounds nothing."""
+    before = np.full(sections.strip.shape, -1, np.int8)
+    i, k, m = np.nonzero(sections.strip >= 0)
+    before[i, k, sections.right[i, k, m]] = sections.strip[i, k, m]
+    return before
 
 
 def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
@@ -482,7 +478,7 @@ def transitions(candidates: Candidates, sections: Sections, known: np.ndarray, l
         intervals = known[first:first + INTERVALS_AT_ONCE + 1]
         window = slice(first, first + len(intervals) - 1)
         # over a gap they do not meet
-        before, behind = (_occupancy(candidates.take(of).at_end(end, np.diff(intervals) == 1), sections.take(of), lane_width) for of, end in (
+        before, behind = (_occupancy(candidates[of].at_end(end, np.diff(intervals) == 1), sections[of], lane_width) for of, end in (
             (intervals[:-1], 1), (intervals[1:], 0)))
         changed, turned = _transition_costs(before, behind, weights)
         lanes, directions = (share[window, None, None] for share in left)

@@ -16,7 +16,6 @@ from scipy.optimize import linear_sum_assignment
 from ...common.arrays import linked_groups, mask_runs
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
-from ...survey.frame.row_table import RowSpans
 from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects, Outlines
@@ -98,26 +97,27 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     `allowed` : m across at the longest gap; half of it where lines touch.
     """
     starts, ends = (_line_ends(lines, trend, at_start) for at_start in (True, False))
-    by_start = np.argsort([e.s for e in starts], kind="stable")
-    stations = np.array([starts[k].s for k in by_start])
     twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = []
+    for a, b in _facing(starts, ends, -LINKS.max_strand_overlap, max_gap):
+        before, after = ends[a], starts[b]
+        if lines[b].last <= lines[a].last or _between_twins(twin_ends[a], twin_starts[b], before, after) \
+                or abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
+            continue
+        gap = max(after.s - before.s, 0.0)
+        limit = allowed * (0.5 + 0.5 * gap / max(max_gap, 1e-6)) + before.open + after.open
+        if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) <= limit:
+            pairs.append(((miss / limit) ** 2 + gap / max_gap, a, b))
+    return _joined(lines, assigned_links(pairs))
+
+
+def _facing(starts, ends, least, most):
+    """Pairs (line that ends, line that begins) of some `_End` with a gap of `least` to `most`, m, between them."""
+    by_start = np.argsort([start.s for start in starts], kind="stable")
+    stations = np.array([starts[k].s for k in by_start])
     for a, before in enumerate(ends):
         check_cancelled()
-        low, high = np.searchsorted(stations, [before.s - LINKS.max_strand_overlap, before.s + max_gap])
-        for b in by_start[low:high]:
-            after, gap = starts[b], starts[b].s - before.s
-            if b == a or lines[b].last <= lines[a].last:
-                continue
-            if abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
-                continue
-            miss = _miss(before, after, trend, edges, lines[a], lines[b])
-            limit = allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6)) + before.open + after.open
-            if _between_twins(twin_ends[a], twin_starts[b], before, after):
-                continue
-            if miss <= limit:
-                pairs.append(((miss / limit) ** 2 + max(gap, 0.0) / max_gap, a, int(b)))
-    return _joined(lines, assigned_links(pairs))
+        yield from ((a, b) for b in by_start[slice(*np.searchsorted(stations, [before.s + least, before.s + most]))].tolist() if b != a)
 
 
 def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], at_start: bool) -> np.ndarray:
@@ -195,22 +195,14 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
     """
     while True:
         ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
-        by_start = np.argsort([e.s for e in starts], kind="stable")
-        stations = np.array([starts[k].s for k in by_start])
-        pairs = []
-        neighbours = lines_beside(lines)
-        for a, before in enumerate(ends):
-            check_cancelled()
-            low, high = np.searchsorted(stations, [before.s + max_gap - LINKS.max_strand_overlap, before.s + max_bridge])
-            for b in by_start[low:high]:
-                after = starts[b]
-                if min(lines[a].painted, lines[b].painted) < LINKS.min_paint_beside_gap:
-                    continue
-                if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
-                    continue
-                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, neighbours, (a, b), before, after, trend):
-                    score = (miss / allowed) ** 2 + (after.s - before.s) / max_bridge
-                    pairs.append((score, a, int(b)))
+        pairs, neighbours = [], lines_beside(lines)
+        for a, b in _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge):
+            before, after = ends[a], starts[b]
+            if min(lines[a].painted, lines[b].painted) < LINKS.min_paint_beside_gap \
+                    or (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
+                continue
+            if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, neighbours, (a, b), before, after, trend):
+                pairs.append(((miss / allowed) ** 2 + (after.s - before.s) / max_bridge, a, b))
         if not pairs:
             return lines
         # the pattern and the course of a longer line are known better: search again
@@ -350,25 +342,16 @@ def weighted_medians(values: np.ndarray, weight: np.ndarray, starts: np.ndarray)
 
 # What lies beside a line, strand or crossing along the road.
 
-LOOKUP_CELL = 1.0   # derived: m of station by which they are looked up
-
-
+@dataclass(frozen=True)
 class StretchLookup:
     """Stretches of road looked up by station; `first`, `last` : (N,) metres."""
 
-    def __init__(self, first: np.ndarray, last: np.ndarray) -> None:
-        self.first, self.last = np.asarray(first, float), np.asarray(last, float)
-        self._origin = int(np.floor(self.first.min(initial=np.inf) / LOOKUP_CELL)) if len(self.first) else 0
-        low, high = self._cell(self.first), self._cell(self.last)
-        self._spans = RowSpans(low, high - low + 1, int(high.max(initial=0)) + 1)
-
-    def _cell(self, station):
-        return np.floor(station / LOOKUP_CELL).astype(int) - self._origin
+    first: np.ndarray
+    last: np.ndarray
 
     def between(self, first: float, last: float) -> np.ndarray:
         """Numbers of those that reach into the road between two stations, ascending."""
-        candidates = self._spans.near(int(self._cell(np.float64(first))), int(self._cell(np.float64(last))))
-        return candidates[(self.first[candidates] <= last) & (self.last[candidates] >= first)]
+        return np.flatnonzero((self.first <= last) & (self.last >= first))
 
 
 def lines_beside(lines: Sequence[LinkedLine]) -> StretchLookup:

@@ -303,7 +303,6 @@ def _strand(place, rank, along, across, height):
 # The edges of the road beside painted lines: an edge line keeps its distance from the edge, also where the road widens.
 
 LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along: the widest paved shoulders are 12 ft (AASHTO, Green Book, 4.4.2)
-LOOKUP_STRETCH = 50.0   # derived: m of road whose edges are listed together
 
 
 @dataclass
@@ -322,24 +321,18 @@ class EdgesBeside:
         return bool(len(self.areas)) and len(self._inner.query(shapely.linestrings(s, d), predicate="intersects")) > 0
 
     @cached_property
-    def _by_stretch(self):
-        edges: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
-        for s, d in self.edges:
-            for stretch in range(int(s[0] // LOOKUP_STRETCH), int(s[-1] // LOOKUP_STRETCH) + 1):
-                edges.setdefault(stretch, []).append((s, d))
-        return edges
+    def _spans(self):
+        return np.array([(s[0], s[-1]) for s, _ in self.edges]).reshape(-1, 2).T
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
-        (s0, d0), (s1, d1) = before, after
-        best = None
-        for s, d in self._by_stretch.get(int(min(s0, s1) // LOOKUP_STRETCH), ()):
-            if not s[0] <= min(s0, s1) <= max(s0, s1) <= s[-1]:
-                continue
-            farthest = float(np.abs(np.interp([s0, s1], s, d) - (d0, d1)).max())
-            if farthest <= LINE_TO_EDGE and (best is None or farthest < best[0]):
-                best = farthest, s, d
-        return None if best is None else partial(np.interp, xp=best[1], fp=best[2])
+        stations, offsets = zip(before, after)
+        along = [self.edges[k] for k in np.flatnonzero((self._spans[0] <= min(stations)) & (self._spans[1] >= max(stations)))]
+        farthest = [np.abs(np.interp(stations, *edge) - offsets).max() for edge in along]
+        if not along or min(farthest) > LINE_TO_EDGE:
+            return None
+        s, d = along[int(np.argmin(farthest))]
+        return partial(np.interp, xp=s, fp=d)
 
 
 def _edges(sections):

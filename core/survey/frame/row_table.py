@@ -15,8 +15,6 @@ import numpy as np
 
 from ..weights import FRAME
 
-BLOCK = 64   # cost: stations for which the rows that are there are listed together
-
 
 class RowSpans:
     """Which stations each row of tables is kept for.

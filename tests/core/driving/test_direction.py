@@ -178,3 +178,12 @@ def test_a_double_line_parts_the_directions_of_a_broad_street_that_was_driven_in
     street.paint(half, pattern="double-solid").paint(-half, pattern="double-solid").paint(3.3, pattern="dashed")
     assert len(street.frame.roads) == 2
     assert {round(offset): way for offset, way in ways(street).items()} == {-8: 1, -5: 1, -2: 1, 2: -1, 5: -1}
+
+
+@pytest.mark.parametrize("median", [1.0, 2.0])
+def test_a_lane_beyond_a_median_leads_the_other_way_and_one_on_this_side_of_it_as_it_was_driven(median):
+    """Two lanes, of which the right one was driven, a strip between two lines that is too narrow for a lane, and one lane more."""
+    street = Street(vehicle=-3.5).paint(-5.25, kind="").paint(-1.75, kind="", pattern="dashed").paint(1.75, kind="")
+    street.paint(1.75 + median, kind="").paint(5.25 + median, kind="")
+    ways = {round(float(np.median(street.offsets(line))), 1): (row["direction"], row["confidence"] > 0.9) for line, row in street.lanes()[0]}
+    assert ways == {-3.5: (1, True), 0.0: (1, True), 3.5 + median: (-1, True)}
