@@ -286,21 +286,13 @@ def _border(track, lines, paint, rows):
     names, of = np.unique(np.where(painted, lines.number[np.where(painted, rows, 0), columns], -1), return_inverse=True)
     square = np.array([paint.get(name, np.nan) ** 2 if name >= 0 else np.nan for name in names.tolist()])[of]
     distance = np.zeros(len(track))
-    cuts = np.r_[0, np.flatnonzero(np.diff(np.where(painted, rows, -1))) + 1, len(rows)].tolist()
-    for begin, end in zip(cuts[:-1], cuts[1:]):
-        if painted[begin]:
-            distance[begin:end] = _distance_to_paint(lines.seen, int(rows[begin]), track.first + begin, track.first + end)
+    for row in np.unique(rows[painted]).tolist():
+        seen, at = lines.seen.spans.first[row] + np.flatnonzero(lines.seen.row(row)), columns[painted & (rows == row)]
+        if len(seen):
+            after = np.searchsorted(seen, at)
+            stations = np.minimum(np.abs(seen[(after - 1).clip(0)] - at), np.abs(seen[after.clip(max=len(seen) - 1)] - at))
+            distance[at - track.first] = np.minimum(stations * STATION_STEP, SIGMA.max_gap_distance)
     return painted, square, distance
-
-
-def _distance_to_paint(seen, row, first, end):
-    """(N,) m from the stations `first` to `end` (exclusive) to the nearest one at which a line is seen, as `_distance_to`."""
-    if not seen.row(row).any():
-        return np.zeros(end - first)
-    low = max(first - int(SIGMA.max_gap_distance / STATION_STEP), 0)
-    painted = seen[row, low:end + int(SIGMA.max_gap_distance / STATION_STEP)]
-    distance = _distance_to(painted) if painted.any() else np.full(len(painted), SIGMA.max_gap_distance)
-    return distance[first - low:end - low]
 
 
 def _distance_to(known):

@@ -236,52 +236,38 @@ def _connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np
     driven, directions = driven_offsets(frame, number, s)
     rows: list[dict[str, Any]] = []
     for way in (1, -1):
-        of_way = [(track, z) for track, z in zip(tracks, heights) if track.direction == way]
-        ends, begins = (np.array([track.last if last else track.first for track, _ in of_way], int) for last in (way > 0, way < 0))
-        for before, a in zip(of_way, ends.tolist()):
-            gap = way * (begins - a) * STATION_STEP
-            ahead = [k for k in np.argsort(gap, kind="stable").tolist() if AREAS.next_lane_gap < gap[k] < AREAS.longest_connector]
+        ends, begins = ([_LaneEnd.of(lane, track, z, last) for lane, (track, z) in enumerate(zip(tracks, heights), start=1) if track.direction == way]
+                        for last in (way > 0, way < 0))
+        for left in ends:
+            gap = way * STATION_STEP * np.array([begin.at - left.at for begin in begins])
+            ahead = [begins[k] for k in np.argsort(gap, kind="stable").tolist() if AREAS.next_lane_gap < gap[k] < AREAS.longest_connector]
             for p in np.flatnonzero(directions == way).tolist():
-                after = next((k for k in ahead if _drives_in(driven[p], of_way[k][0], begins[k])), None)
-                if after is None or not _drives_in(driven[p], before[0], a):
+                entered = next((begin for begin in ahead if begin.holds(driven[p, begin.at])), None)
+                if entered is None or not left.holds(driven[p, left.at]):
                     continue
-                columns = np.arange(a, begins[after] + way, way)
+                columns = np.arange(left.at, entered.at + way, way)
                 if np.isfinite(driven[p, columns]).all():
-                    area = _connector(before, of_way[after], columns, driven[p, columns], s, frame, number)
-                    rows.append(area | dict(lane=len(tracks) + len(rows) + 1))
+                    points = np.column_stack(frame.roads[number].to_map(s[columns], driven[p, columns]))
+                    (station, first), (end, last) = sorted((float(s[of.at]), of.d) for of in (left, entered))
+                    rows.append(_connector(number, points, (left, entered), [way * (of.d - driven[p, of.at]) for of in (left, entered)])
+                                | dict(lane=len(tracks) + len(rows) + 1, station=station, end=end, first=first, last=last))
                     break
     return rows
 
 
-def _drives_in(driven, track, at):
-    """Whether a pass, by its offset at each station, is in a lane at one of them."""
-    d, width = track.at(int(at))
-    return abs(driven[at] - d) < width / 2
-
-
-def _connector(before, after, columns, driven, s, frame, number):
-    """The row of Lanes from one lane to another, (track, local z) each, along those who drove between them at `columns`, in order of travel."""
-    share, way = _eased(np.linspace(0.0, 1.0, len(columns))), before[0].direction
-    (d_before, wide_before), (d_after, wide_after) = before[0].at(int(columns[0])), after[0].at(int(columns[-1]))
-    # from the middle of the one lane to the middle of the other, along the drive between them
-    d = driven + (d_before - driven[0]) * (1 - share) + (d_after - driven[-1]) * share
-    half = (wide_before * (1 - share) + wide_after * share) / 2
-    z = before[1][columns[0] - before[0].first] * (1 - share) + after[1][columns[-1] - after[0].first] * share
-    sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + way * side * half), z]) for side in (1, -1)]
-    (station, first), (end, last) = sorted((float(s[columns[k]]), float(d[k])) for k in (0, -1))
-    return _row(number, before[0], after[0], sides, half, station=station, end=end, first=first, last=last)
-
-
-def _eased(share):
-    """A share from 0 to 1 that begins and ends without a slope: no border turns at once where the lane ends."""
-    return share**2 * (3 - 2 * share)
-
-
-def _row(road, before, after, sides, half, **places):
-    """The row of Lanes of an area from one lane to another; `half` of its width at each place, `places` along and across the road."""
-    return dict(road=road, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
-                confidence=AREAS.connector_confidence * float(min(before.confidence.mean(), after.confidence.mean())), status="inferred",
-                width=float(np.median(2 * half)), **places)
+def _connector(road, points, ends, offsets):
+    """The row of Lanes from one _LaneEnd to another along (N, 2) points, from which their middles lie `offsets`, m, to the left."""
+    chainage = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    # it begins and ends without a slope: no border turns at once where the lane ends
+    share = np.clip(chainage / max(chainage[-1], 1e-9), 0.0, 1.0)
+    share = share**2 * (3 - 2 * share)
+    ahead = np.gradient(points, axis=0)
+    normal = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
+    middle, half, z = (before * (1 - share) + after * share for before, after in (offsets, [end.width / 2 for end in ends], [end.z for end in ends]))
+    left, right = (np.c_[points + normal * (middle + side * half)[:, None], z] for side in (1, -1))
+    return dict(road=road, type="connector", direction=ends[0].track.direction, left=left, right=right, about=[NO_BORDER, NO_BORDER],
+                confidence=AREAS.connector_confidence * float(min(end.track.confidence.mean() for end in ends)), status="inferred",
+                width=float(np.median(2 * half)))
 
 
 class RoadLanes(NamedTuple):
@@ -293,12 +279,24 @@ class RoadLanes(NamedTuple):
 
 
 class _LaneEnd(NamedTuple):
-    """Where a pass leaves or enters a lane: number of the lane, its track, local z, and the station of the grid."""
+    """Where a lane begins or ends: its number, its track, the station of the grid, and offset, width and local z there."""
 
     lane: int
     track: LaneTrack
-    z: float
     at: int
+    d: float
+    width: float
+    z: float
+
+    @classmethod
+    def of(cls, lane: int, track: LaneTrack, z: np.ndarray, last: bool) -> _LaneEnd:
+        """The one at the last station of a lane, or at its first."""
+        at = track.last if last else track.first
+        return cls(lane, track, at, *track.at(at), float(z[-1 if last else 0]))
+
+    def holds(self, d: float) -> bool:
+        """Whether a pass at an offset is in the lane."""
+        return abs(d - self.d) < self.width / 2
 
 
 def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -332,28 +330,21 @@ def connectors_between_roads(lanes: dict[int, RoadLanes], frame: RoadFrame, rows
 
 def _lane_end(lanes: RoadLanes, drive: Pass, leaving: bool) -> _LaneEnd | None:
     """The last lane of its direction at whose end a pass is in it, or the first at whose beginning it is."""
-    first, last = drive.span
-    ends = []
-    for number, (track, z) in enumerate(zip(lanes.tracks, lanes.heights), start=1):
-        tip = track.last if leaving == (drive.direction > 0) else track.first
-        if track.direction != drive.direction or not first <= lanes.s[tip] <= last:
-            continue
-        d, width = track.at(tip)
-        if abs(drive.at_station(lanes.s[tip:tip + 1])[0][0] - d) < width / 2:
-            ends.append(_LaneEnd(number, track, float(z[tip - track.first]), tip))
+    (first, last), at_last = drive.span, leaving == (drive.direction > 0)
+    ends = [_LaneEnd.of(lane, track, z, at_last) for lane, (track, z) in enumerate(zip(lanes.tracks, lanes.heights), start=1)
+            if track.direction == drive.direction]
+    ends = [end for end in ends if first <= lanes.s[end.at] <= last and end.holds(drive.at_station(lanes.s[end.at:end.at + 1])[0][0])]
     if not ends:
         return None
-    return (max if leaving == (drive.direction > 0) else min)(ends, key=lambda end: end.at)
+    return (max if at_last else min)(ends, key=lambda end: end.at)
 
 
 def _turn(left, entered, before, after, lanes, frame):
     """The area between two lane ends along two passes that follow each other; None where it is too long or there is no way between them."""
-    path, offsets, half = [], [], []
+    path, offsets = [], []
     for end, drive, ahead in ((left, before, True), (entered, after, False)):
         s = lanes[drive.road].s
-        d, width = end.track.at(end.at)
-        offsets.append(drive.direction * (d - drive.at_station(s[end.at:end.at + 1])[0][0]))
-        half.append(width / 2)
+        offsets.append(drive.direction * (end.d - drive.at_station(s[end.at:end.at + 1])[0][0]))
         # from the lane to the end of its pass, or from the beginning of its pass to the lane
         to = drive.span[1 if ahead == (drive.direction > 0) else 0]
         stations = np.linspace(s[end.at], to, max(int(abs(to - s[end.at]) / STATION_STEP), 1) + 1)
@@ -361,22 +352,12 @@ def _turn(left, entered, before, after, lanes, frame):
         path.append(np.c_[x, y] if ahead else np.c_[x, y][::-1])
     points = np.concatenate(path)
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > STATION_STEP / 2]]
-    if len(points) < 3:
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    if len(points) < 3 or not AREAS.next_lane_gap < length < AREAS.longest_connector:
         return None
-    chainage = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
-    if not AREAS.next_lane_gap < chainage[-1] < AREAS.longest_connector:
-        return None
-    share = _eased(chainage / chainage[-1])
-    ahead = np.gradient(points, chainage, axis=0)
-    normal = np.c_[-ahead[:, 1], ahead[:, 0]] / np.hypot(*ahead.T)[:, None]
-    middle = offsets[0] * (1 - share) + offsets[1] * share
-    wide = half[0] * (1 - share) + half[1] * share
-    z = left.z * (1 - share) + entered.z * share
-    sides = [np.c_[points + normal * (middle + side * wide)[:, None], z] for side in (1, -1)]
     start = float(lanes[before.road].s[left.at])
-    d = float(left.track.at(left.at)[0])
-    return _row(before.road, left.track, entered.track, sides, wide, station=start,
-                end=start + before.direction * float(chainage[-1]), first=d, last=d)
+    return _connector(before.road, points, (left, entered), offsets) | dict(
+        station=start, end=start + before.direction * length, first=left.d, last=left.d)
 
 
 def _piece_at(rows, station):

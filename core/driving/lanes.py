@@ -134,11 +134,8 @@ def beyond_paint(tracks: list[LaneTrack], boundaries: Boundaries, estimate: Road
 
 def _driven_on(estimate, s, ahead, d, width, direction):
     """(N,) m, how far aside those who drove in a lane at `d` at the first of the stations `ahead` drove at each; NaN beyond, None without any."""
-    evidence = estimate.evidence
-    there = np.isfinite(evidence.driven[:evidence.own, np.searchsorted(estimate.candidates.first, ahead, side="right") - 1])
-    passes = np.flatnonzero((evidence.directions[:evidence.own] == direction) & there[:, 0])
-    drives = np.where(there[passes], _drives(ahead, s, estimate, passes), np.nan)
-    drives = drives[np.abs(drives[:, 0] - d) < width / 2]
+    drives, passes = _drives(ahead, s, estimate, direction)
+    drives = drives[(passes < estimate.evidence.own) & (np.abs(drives[:, 0] - d) < width / 2)]
     return (drives - drives[:, :1]).mean(axis=0) if len(drives) else None
 
 
@@ -216,7 +213,8 @@ def _parts(boundaries, estimate, lane_width, line_distance):
             part = _where_driven(part, boundaries.s, estimate, room, [0.0 * anywhere, anywhere] if alone else [
                 anywhere, anywhere + estimate.weights.width_sigma**2], rest[0][2] / rest[1][2] if alone else 1.0)
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
-            drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
+            drives, passes = _drives(part.stations, boundaries.s, estimate, (1, 0, -1))
+            drives = drives[passes < estimate.evidence.own]
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
@@ -241,20 +239,20 @@ def _where_driven(part, s, estimate, room, variances, full):
 
 def _driven_beside(part, s, estimate):
     """(N,) m, where those drove who drove in a lane and along with it, from its middle, and how many they are."""
-    evidence = estimate.evidence
-    there = np.isfinite(evidence.driven[:, np.searchsorted(estimate.candidates.first, part.stations, side="right") - 1])
-    passes = np.flatnonzero((evidence.directions == part.direction) & there.any(axis=1))
-    beside = _drives(part.stations, s, estimate, passes) - part.d
-    inside = there[passes] & (np.abs(beside) < part.width / 2)
+    beside = _drives(part.stations, s, estimate, part.direction)[0] - part.d
+    inside = np.abs(beside) < part.width / 2
     count = inside.sum(axis=0)
-    return (inside * beside).sum(axis=0) / np.maximum(count, 1), count
+    return np.where(inside, beside, 0.0).sum(axis=0) / np.maximum(count, 1), count
 
 
-def _drives(stations, s, estimate, passes):
-    """(P, N) m, offsets of some passes at (N,) stations of the grid, between the middles of intervals and beyond the last of them."""
-    c, driven = estimate.candidates, estimate.evidence.driven
-    middle, seen = (s[c.first] + s[c.last]) / 2, np.isfinite(driven)
-    return np.array([np.interp(s[stations], middle[seen[p]], driven[p, seen[p]]) for p in passes]).reshape(-1, len(stations))
+def _drives(stations, s, estimate, directions):
+    """(P, N) m, offsets at (N,) stations of the grid of passes of some directions, between the middles of intervals, NaN where they did not drive;
+    and (P,) which passes they are."""
+    c, evidence = estimate.candidates, estimate.evidence
+    there = np.isfinite(evidence.driven[:, np.searchsorted(c.first, stations, side="right") - 1])
+    middle, passes = (s[c.first] + s[c.last]) / 2, np.flatnonzero(np.isin(evidence.directions, directions) & there.any(axis=1))
+    offsets = [np.interp(s[stations], middle[seen], driven[seen]) for driven in evidence.driven[passes] for seen in [np.isfinite(driven)]]
+    return np.where(there[passes], np.array(offsets).reshape(-1, len(stations)), np.nan), passes
 
 
 def _with_borders(boundaries, candidates, span):

@@ -22,8 +22,24 @@ USUAL_WIDTH = 0.10, 0.20   # source: m, of lines of usual breadth in all countri
 ENDS = SURFACE, PAVEMENT       # ends of the surface
 
 
+class MadeOf:
+    """What has `made_of`, of SOLID ... BARE."""
+
+    made_of: np.ndarray
+
+    @cached_property
+    def bounding(self) -> np.ndarray:
+        """Bool, whether each is paint that bounds lanes: a line, or the border of a hatched area."""
+        return self.painted | (self.made_of == HATCHING)
+
+    @cached_property
+    def painted(self) -> np.ndarray:
+        """Bool, whether each is a painted line."""
+        return self.made_of <= DOUBLE
+
+
 @dataclass
-class Boundaries:
+class Boundaries(MadeOf):
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
     patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the pavement
@@ -38,16 +54,6 @@ class Boundaries:
     paint: np.ndarray   # (R,) m of paint of each row
     named: np.ndarray   # (R,) what a row separates by its layer, -1 where that is not said
     wide: RowTable   # (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road
-
-    @cached_property
-    def bounding(self) -> np.ndarray:
-        """(R,) bool, whether a row is paint that bounds lanes: a line, or the border of a hatched area."""
-        return self.painted | (self.made_of == HATCHING)
-
-    @cached_property
-    def painted(self) -> np.ndarray:
-        """(R,) bool, whether a row is a painted line."""
-        return self.made_of <= DOUBLE
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
@@ -117,17 +123,16 @@ def _on_stations(sections, s):
 
 def _at_edges(surface, pavement, s):
     """The ends of the surface moved to the edges of the pavement that were seen there, and where that is, (2, K) bool."""
-    at_edge = np.zeros(surface.shape, bool)
-    if pavement is None or not len(pavement.d):
-        return surface, at_edge
-    d, seen = _on_stations(pavement, s)
-    nearest = np.full(surface.shape, np.inf)
-    for row, (first, end) in enumerate(zip(d.spans.first, d.spans.end)):
-        window = slice(first, end)
-        offset = np.where(seen.row(row), d.row(row), np.inf) - surface[:, window]
-        nearest[:, window] = np.where(np.isfinite(offset) & (np.abs(offset) < np.abs(nearest[:, window])), offset, nearest[:, window])
-    at_edge = np.abs(nearest) < LANES.surface_merge
-    return np.where(at_edge, surface + np.where(at_edge, nearest, 0.0), surface), at_edge
+    nearest = np.full(surface.shape, np.nan)
+    if pavement is not None and len(pavement.d):
+        d, seen = _on_stations(pavement, s)
+        for of_side, ends in zip(nearest, surface):
+            offset = d.values - ends[d.spans.station]
+            near = np.flatnonzero(seen.values & (np.abs(offset) < LANES.surface_merge))
+            near = near[np.argsort(-np.abs(offset[near]), kind="stable")]   # the nearest is written last
+            of_side[d.spans.station[near]] = offset[near]
+    at_edge = np.isfinite(nearest)
+    return np.where(at_edge, surface + nearest, surface), at_edge
 
 
 def _wide_share(lines):
@@ -147,7 +152,7 @@ def _made_of(pattern):
 
 
 @dataclass
-class Candidates(Rows):
+class Candidates(Rows, MadeOf):
     """Boundaries by interval, from left to right; the first and the last stand for what lies outside."""
 
     first: np.ndarray   # (I,) stations of the grid that an interval begins and ends with
@@ -163,16 +168,6 @@ class Candidates(Rows):
     wide: np.ndarray   # (I, M) as there, NaN of double lines
     drift: np.ndarray   # (I, M, 2) m, how far left of those offsets a boundary lies where an interval begins and where it ends
     beside: np.ndarray   # (I, M, 2, 4) as `lanes_beside` gives it; NaN before
-
-    @property
-    def bounding(self) -> np.ndarray:
-        """(I, M) bool, whether a boundary is paint that bounds lanes."""
-        return self.painted | (self.made_of == HATCHING)
-
-    @property
-    def painted(self) -> np.ndarray:
-        """(I, M) bool, whether a boundary is a painted line."""
-        return self.made_of <= DOUBLE
 
     def at_end(self, end: int, which: np.ndarray) -> Candidates:
         """The boundaries where the intervals begin, 0, or where they end, 1, in those of them that are meant, (I,) bool."""
@@ -241,9 +236,7 @@ class _Stretches:
 def _in_first_cell(cells, intervals, first_cell, in_cell):
     """(N,) bool, whether rows are in the first cell of their intervals, and so in all cells of them."""
     count = int(cells.of.max(initial=0)) + int(first_cell.max(initial=0)) + 1
-    key, sought = cells.row * count + cells.of, intervals.row * count + first_cell[intervals.of]
-    indices = np.searchsorted(key, sought).clip(0, max(len(key) - 1, 0))
-    return (key[indices] == sought) & in_cell[indices] if len(key) else np.zeros(len(sought), bool)
+    return np.isin(intervals.row * count + first_cell[intervals.of], (cells.row * count + cells.of)[in_cell])
 
 
 def _entries(boundaries, intervals, size, weights):

@@ -197,10 +197,11 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     parts = (sections.strip == FIRST) & (kind_right == SECOND)
     drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
     cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
-    # what nobody drives on between lanes, as a median, parts the directions
-    before = strips_before(sections)
-    again = [((before == rest) & (sections.strip == lane)).sum(2) for rest, lane in ((REST_FIRST, FIRST), (REST_SECOND, SECOND))]
-    cost = cost + weights.median_within * (np.maximum(again[0] - 1, 0) + again[1])
+    # what is too narrow for a lane between others, as a median, parts the directions
+    i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)))
+    end, lane = sections.right[i, k, m], strips_before(sections)[i, k, m]
+    within = np.isin(lane, (FIRST, SECOND)) & (sections.strip[i, k, end] == lane) & (c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane)
+    np.add.at(cost, (i, k), weights.median_within * within)
     return cost * c.observations(weights)[:, None]
 
 

@@ -356,16 +356,7 @@ def _islands(curbs):
     """Outlines of the islands of CrossSections, whose sides share a number."""
     of_island = np.array(curbs.kinds, object)[curbs.d.spans.owner] == "island"
     number, station, d = (values[of_island & np.isfinite(curbs.d.values)] for values in (curbs.number.values, curbs.d.spans.station, curbs.d.values))
-    return [_area_between(curbs.s[station[number == island]], d[number == island]) for island in np.unique(number)]
-
-
-def _area_between(s, d):
-    """The area between the least and the greatest offset at each station, of (N,) places."""
-    stations, of = np.unique(s, return_inverse=True)
-    low, high = np.full(len(stations), np.inf), np.full(len(stations), -np.inf)
-    np.minimum.at(low, of, d)
-    np.maximum.at(high, of, d)
-    return shapely.Polygon(np.r_[np.c_[stations, low], np.c_[stations, high][::-1]]) if len(stations) > 1 else shapely.Polygon()
+    return [shapely.convex_hull(shapely.multipoints(np.c_[curbs.s[station], d][number == island])) for island in np.unique(number)]
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.
