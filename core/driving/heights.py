@@ -182,15 +182,12 @@ def _smooth_heights(z: np.ndarray) -> np.ndarray:
 
 def lane_heights(lines: CrossSections, tracks: list[LaneTrack], measured: Sequence[np.ndarray | None]) -> list[np.ndarray]:
     """Local z along every lane, (N,) each: that of `road_heights` where it is known, else from the marking lines beside it."""
-    return [_height(z, _line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
-
-
-def _height(measured, painted):
-    if measured is None:
-        return _smooth_heights(painted)
-    shared = np.isfinite(measured) & np.isfinite(painted)
-    # where the road was not scanned the lines' height serves, shifted to what the road says nearby
-    if shared.any():
-        rows = np.arange(len(measured))
-        painted = painted + np.interp(rows, rows[shared], (measured - painted)[shared])
-    return _smooth_heights(np.where(np.isfinite(measured), measured, painted))
+    result = []
+    for track, of_road in zip(tracks, measured):
+        z = _line_heights(lines, track.first, track.d)
+        if of_road is not None and (shared := np.isfinite(of_road) & np.isfinite(z)).any():
+            # where the road was not scanned the lines' height serves, shifted to what the road says nearby
+            rows = np.arange(len(z))
+            z = z + np.interp(rows, rows[shared], (of_road - z)[shared])
+        result.append(_smooth_heights(z if of_road is None else np.where(np.isfinite(of_road), of_road, z)))
+    return result

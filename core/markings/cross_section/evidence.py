@@ -228,17 +228,13 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
         return None
     shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
     shapely.prepare(shape)
-    first, last, low, high = (markings.extent[rows, k] for k in range(4))
-    near_bars = np.zeros(len(s), bool)
-    for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
-        near_bars[a:b] = True
+    first, last, low, high = markings.extent[rows].T
+    near = np.unique(np.concatenate([np.arange(*ends) for ends in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))]))
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
     columns = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
-    result, rows_near = np.zeros((len(s), BINS), bool), np.flatnonzero(near_bars)
-    if len(rows_near) and len(columns):
-        at_s, at_d = np.repeat(s[rows_near], len(columns)), np.tile(offsets[columns], len(rows_near))
-        inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
-        result[np.ix_(rows_near, columns)] = inside.reshape(len(rows_near), len(columns))
+    result = np.zeros((len(s), BINS), bool)
+    places = frame.road(road).to_map(np.repeat(s[near], len(columns)), np.tile(offsets[columns], len(near)))
+    result[np.ix_(near, columns)] = shapely.contains_xy(shape, *places).reshape(len(near), len(columns))
     return result
 
 
