@@ -64,11 +64,6 @@ class Columns:
         return (self._length,)
 
     @property
-    def nbytes(self) -> int:
-        """Bytes of all columns, whether or not they are in memory."""
-        return self._length * self.dtype.itemsize
-
-    @property
     def names(self) -> tuple[str, ...]:
         return self.dtype.names or ()
 
