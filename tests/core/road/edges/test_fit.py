@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH, length_of, parked_car, street, survey_of
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import CURB_POINTS, Features
-from lanewright.core.common.progress import Progress
 from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -241,16 +241,11 @@ def test_without_curbs_nothing_is_drawn_unless_a_width_is_asked_for():
 
 
 def test_a_layer_without_edges_comes_with_a_word():
-    class Heard(Progress):
-        warnings = []
-
-        def warn(self, text):
-            self.warnings.append(text)
-
-    fit_road_edges(curb_points(np.arange(0, 30, 1.0)), straight_frame(), progress=Heard())
-    assert not Heard.warnings
-    fit_road_edges(Features("PointZ", list(CURB_POINTS)), straight_frame(), progress=Heard())
-    assert len(Heard.warnings) == 1 and "no road edges" in Heard.warnings[0]
+    heard = Heard()
+    fit_road_edges(curb_points(np.arange(0, 30, 1.0)), straight_frame(), progress=heard)
+    assert not heard.warned
+    fit_road_edges(Features("PointZ", list(CURB_POINTS)), straight_frame(), progress=heard)
+    assert len(heard.warned) == 1 and "no road edges" in heard.warned[0]
 
 
 def test_the_fallback_fills_only_what_has_no_curb():
