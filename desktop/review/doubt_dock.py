@@ -529,31 +529,16 @@ class DoubtDock(QDockWidget):
         layer = self.layer
         if layer.isEditable():
             layer.commitChanges()
+            self.hint.hide()
             self.iface.actionPan().trigger()
             self.corrected()
             return
-        moved = partial(self._note_vertex, layer)
-
-        def added(name, rows):
-            note_written(layer, rows)   # what is saved has other numbers
-
-        def ended():
-            layer.geometryChanged.disconnect(moved)
-            layer.committedFeaturesAdded.disconnect(added)
-            layer.editingStopped.disconnect(ended)
-            self.hint.hide()
-
-        layer.geometryChanged.connect(moved)
-        layer.committedFeaturesAdded.connect(added)
-        layer.editingStopped.connect(ended)
+        layer.committedGeometriesChanges.connect(lambda name, moved: [note_change(layer, layer.getFeature(row), line) for row, line in moved.items()])
+        layer.committedFeaturesAdded.connect(lambda name, rows: note_written(layer, rows))   # what is saved has other numbers
         self.iface.setActiveLayer(layer)
         layer.startEditing()
         self.iface.actionVertexToolActiveLayer().trigger()
         self._say(tr("Click a vertex and click where it belongs; Ctrl+Z takes it back. V keeps what was dragged."))
-
-    def _note_vertex(self, layer, number, geometry):
-        note_change(layer, layer.getFeature(number), geometry)
-        self._tell()
 
     def make_again(self) -> None:
         """Make the map again with its corrections, in the background."""
