@@ -117,7 +117,7 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         title = titles_of(layer)
-        for feature in layer.getFeatures(line.boundingBox()):
+        for feature in layer.getFeatures(line.boundingBox().buffered(TOUCHES)):
             intersection = feature.geometry().extendLine(TOUCHES, TOUCHES).intersection(line)
             for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)

@@ -47,8 +47,8 @@ def test_lines_cross_it_at_their_offset_and_height_and_say_what_they_are(project
 def test_a_line_that_was_drawn_up_to_the_section_crosses_it(project, azimuth):
     section = Section(EAST, NORTH, azimuth)
     (x, y), (ahead, north) = 5 * np.array(section.left), section.ahead
-    edges = added(project, "ROAD_EDGES", ROAD_EDGES, (f"LINESTRING Z ({x - 4 * ahead} {y - 4 * north} 100, {x - 1e-4 * ahead} {y - 1e-4 * north} 101)",
-                                                      dict(road=0, side="left", status="drawn")))
+    line = f"LINESTRING Z ({x - 4 * ahead} {y - 4 * north} 100, {x - 1e-4 * ahead} {y - 1e-4 * north} 101)"
+    edges = added(project, "ROAD_EDGES", ROAD_EDGES, (line, dict(road=0, side="left", status="drawn")))
     crossing, = crossings(section, [edges])
     assert (crossing.offset, crossing.z) == pytest.approx((5.0, 101.0), abs=0.01)
 
