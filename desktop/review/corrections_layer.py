@@ -17,7 +17,6 @@ from qgis.core import (
     QgsGeometry,
     QgsProject,
     QgsProviderRegistry,
-    QgsRectangle,
     QgsSpatialIndex,
     QgsUnitTypes,
     QgsVectorLayer,
@@ -53,9 +52,14 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
 
 
 def layer_of(road_map: RoadMap | None) -> QgsVectorLayer | None:
-    """The layer that corrections of a road map go to, None before the first."""
+    """The layer with the corrections of a road map: one that names its survey, else one that names none and lies where it does; None for none."""
     vectors = [] if road_map is None else road_map.vectors
-    return corrections_of_survey(QgsProject.instance(), road_map.survey, vectors[0].extent(), vectors[0].crs()) if vectors else None
+    for layer in corrections_layers(QgsProject.instance()) if vectors else ():
+        survey = layer.customProperty(SURVEY)
+        if survey == road_map.survey or not survey and layer.featureCount() > 0 \
+                and brought_to(vectors[0].extent(), vectors[0].crs(), layer.crs()).intersects(layer.extent()):
+            return layer
+    return None
 
 
 def ask_for_file(parent: QWidget, road_map: RoadMap | None, title: str, name: str, kind: str) -> str:
@@ -86,16 +90,6 @@ def layer_to_write(iface, road_map: RoadMap, ask: Callable[[], str]) -> QgsVecto
     except RoadExtractionError as problem:
         say(iface, str(problem), Qgis.MessageLevel.Warning)
         return None
-
-
-def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
-    """The layer with the corrections of a survey: one that names it, else one that names none and lies where the survey does."""
-    for layer in corrections_layers(project):
-        layer_survey = layer.customProperty(SURVEY)
-        if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
-                and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
-            return layer
-    return None
 
 
 def _placed(line, crs, layer):

@@ -66,14 +66,11 @@ KIND, LENGTH = "lanewright/doubts/kind", "lanewright/doubts/shortest"   # settin
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
-    Where the map is made again while the window is open, the window goes on in the new one, which `made_again` has.
+    Signal `shown` has the place. Where the map is made again while the window is open, it goes on in the new one, which `made_again` has.
     """
 
     shown = pyqtSignal(object)
     made_again = pyqtSignal(object)
-    run_wanted = pyqtSignal(object, object)
-    stage_wanted = pyqtSignal(str, dict)
 
     def __init__(self, iface):
         super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
@@ -149,8 +146,6 @@ class DoubtDock(QDockWidget):
                       row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, row(self.kept, self.report_button),
                       row(self.undo_button, self.vertex_button, self.run_button, self.at_once), self.remaking)
         self.steps = StepsPanel()
-        self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
-        self.steps.stage_wanted.connect(self.stage_wanted)
         self.tabs = QTabWidget(documentMode=True)
         self.tabs.addTab(body, tr("Doubtful places"))
         self.tabs.addTab(self.steps, tr("Steps"))

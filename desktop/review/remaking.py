@@ -14,7 +14,7 @@ from ...processing_provider.texts import tr
 from ..background import BackgroundRun, loaded
 from ..widgets import button, column, row, say, wrapped
 from .corrections_layer import changes_of, note_made
-from .steps import saved, values_with
+from .steps import saved, values_again
 
 MOST_NAMED = 3   # stretches that are named; of more, the first
 NEAR = 30.0      # m about a correction within which a driving line tells its station
@@ -59,7 +59,7 @@ class Remaking(QWidget):
         kept = saved(road_map)
         places = {output: kept[output] if output == "REPORT" else loaded(kept.get(output, QgsProcessing.TEMPORARY_OUTPUT))
                   for output in {**kept, **dict.fromkeys(road_map.outputs)}}
-        self.run = BackgroundRun("roadmap", {**values_with(road_map, layer), **places}, partial(self._ended, layer.id(), len(changes)))
+        self.run = BackgroundRun("roadmap", {**values_again(road_map, layer), **places}, partial(self._ended, layer.id(), len(changes)))
         self.bar.setValue(0)
         self.run.task.progressChanged.connect(lambda percent: self.bar.setValue(round(percent)))
         self.show()

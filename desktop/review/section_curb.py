@@ -48,9 +48,8 @@ class CurbLine:
         layer = None if self.face is None else layer_to_write(self.dock.iface, self.dock.road_map, self.dock.ask_for_file)
         if layer is None:
             return ""
-        line, former = self.lines[-1] if self._goes_on() else [], None
-        if line:
-            former = self._row_of(layer, line)   # None where it was taken back meanwhile
+        line = self.lines[-1] if self._goes_on() else []
+        former = self._row_of(layer, line) if line else None   # None where it was taken back meanwhile
         if former is None:
             line, self.lines = [], []
         self.lines.append([self.face, *line] if line and _apart(self.face, line[0]) < _apart(self.face, line[-1]) else [*line, self.face])

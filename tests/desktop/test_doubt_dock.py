@@ -435,6 +435,17 @@ def test_cancel_ends_the_run_and_those_that_wait_and_what_failed_says_why(at_fir
     assert "The disk is full" in at_first.iface.messageBar().currentItem().text() and not runs[1].loaded
 
 
+def test_a_run_without_its_point_clouds_says_that_they_are_not_there(at_first):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    clock = QElapsedTimer()
+    clock.start()
+    while at_first.remaking.run is not None and clock.elapsed() < 60_000:
+        QCoreApplication.processEvents()
+    assert "The map was not made again" in at_first.iface.messageBar().currentItem().text()
+    assert "a.laz" in at_first.iface.messageBar().currentItem().text() and not at_first.remaking.isVisible()
+
+
 def test_on_wish_every_correction_is_made_at_once(at_first, runs):
     at_first.at_once.setChecked(True)
     try:
