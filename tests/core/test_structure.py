@@ -25,7 +25,7 @@ NUMBERS = {
     "core/countries": 5,
     "core/io": 5,
     "core/curves": 9,
-    "core/survey": 76,
+    "core/survey": 75,
     "core/road": 17,
     "core/intensity": 15,
     "core/markings": 56,

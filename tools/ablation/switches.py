@@ -156,7 +156,6 @@ ROWS = (
         ("pieces in line", "common.tracking:pieces_between", gives([]), "residential street, parked cars, half the points",
          "common.tracking:with_pieces_in_line common.tracking:pieces_between"),
         ("weak chains that continue", "common.tracking:_continuing", gives([]), "residential street, parked cars, stations moved"),
-        ("chains that go on unselected", "common.tracking:_continued", Around(gives(nth(0))), "residential street"),
         ("short curbs dropped", "common.tracking:drop_short_curbs", as_list, "flush cycle path with a false step of 3 m, crossing"),
         ("wander of sloped chains", "common.tracking:_wander", gives(0.0), "curbs in bends"),
         ("averages of noisy profiles", "profiles.detect:_steps_by_noise", _unaveraged, "many-beam scanner (Karlsruhe)",
