@@ -571,6 +571,9 @@ class SURFACE:
     roughness_factor: float = 1.6   # times the roughness of the road, and
     roughness_floor: float = 0.0025   # m added to it, above which ground is rougher
     cells_of_roughness: int = 15   # cells before a place whose roughness is the road's
+    min_tilt_change: float = 0.10   # m per m: change of tilt at which a bank or a ditch begins,
+    cells_of_tilt: tuple[int, int] = 10, 6   # between so many cells before a place and from it on,
+    min_cells_of_tilt: tuple[int, int] = 5, 4   # of which so many were measured
     max_empty_ground_cells: int = 5   # consecutive cells without points at which the road ends,
     max_blind_cells: int = 12   # unless at most so many are empty and road follows: the blind zone beside the vehicle
     cells_before_blind: int = 10   # cells before a blind zone whose roughness the road behind must have

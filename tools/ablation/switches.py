@@ -209,6 +209,7 @@ ROWS = (
         ("slope of the look", "pavement_limit:_without_slope", nth(0), "far side of a country road"),
         ("brighter strips along the road", "ground_change:other_ground_begins", filled(np.nan), "flush sidewalk or bicycle path"),
         ("road behind a blind zone", "ground_change:HalfProfiles._road_behind", gives(0), "scanner that does not look beside its vehicle"),
+        ("ground that tilts away", "ground_change:_turns", none_of(1)),
         ("path that profiles agree with", "pavement_edge:_agreed", lambda changes, *_: changes.astype(float), "verges, gravel"),
         ("mouths of side streets", "extract:opened_limits", nth(0), "side streets not driven",
          "extract:opened_limits extract:street_ground extract:cells_driven"),

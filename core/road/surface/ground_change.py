@@ -1,6 +1,6 @@
 """Where the ground across the road changes: the first cell outward that is no longer like the road before it.
 
-The ground changes where, over some cells, it is off the height of the road or rougher than the road before, or where nothing was
+The ground changes where, over some cells, it is off the height of the road, tilts away, or is rougher than the road before, or where nothing was
 measured and no road follows. A flush sidewalk or bicycle path before such a place changes in brightness alone: paving and concrete are about twice as
 bright as asphalt. Falloff with range has no step, painted lines are narrower than what is compared, and patches are shorter. The rules are our own.
 """
@@ -46,7 +46,7 @@ class HalfProfiles:
             check_cancelled()
             part = slice(first, first + SURFACE.profiles_per_batch)
             uneven = _unevenness(self.off[part], np.maximum(start[part], SURFACE.cells_of_unevenness))
-            differs = _differs(self.off[part], self.rough[part], uneven)
+            differs = _differs(self.u, self.off[part], self.rough[part], uneven)
             for k in range(len(uneven)):
                 profile = first + k
                 cells[profile] = self._change(profile, int(start[profile]), int(stop[profile]), empty[profile], differs[k], float(uneven[k]))
@@ -106,7 +106,7 @@ def _unevenness(off, cells):
     return np.nan_to_num(known_median(np.where(np.arange(step.shape[1]) < cells[:, None] - 1, step, np.nan), 1))
 
 
-def _differs(off, rough, uneven):
+def _differs(u, off, rough, uneven):
     """(P, K) bool, whether the ground from a cell on is no longer that of the road."""
     ahead, before = _ahead(off, SURFACE.min_change_cells), _before(off, SURFACE.min_change_cells)
     measured = np.isfinite(ahead)
@@ -124,7 +124,37 @@ def _differs(off, rough, uneven):
         rough_count = np.isfinite(rough_ahead).sum(axis=2)
         rugged = (rough_count > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] \
             & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * rough_count)
-    return high | step | rugged
+    return high | step | rugged | _turns(u, off, slack)
+
+
+def _turns(u, off, slack):
+    """(P, K) bool, whether the ground from a cell on tilts away from the metre before."""
+    # cells are of one width, so places are counted from the cell itself
+    size = u[1] - u[0]
+    after, inner = _ahead(off, SURFACE.cells_of_tilt[1]), _before(off, SURFACE.cells_of_tilt[0])
+    at_after, at_inner = np.arange(SURFACE.cells_of_tilt[1]) * size, np.arange(-SURFACE.cells_of_tilt[0], 0) * size
+    a, b = np.isfinite(after), np.isfinite(inner)
+    level, slope = _lines(at_inner, inner, b)
+    rise = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
+    _, tilt = _lines(at_after, rise, a)
+    # most cells, not a single one beside an obstacle
+    typical = known_median(rise / (at_after + 0.5 * size), 2)
+    with np.errstate(invalid="ignore"):
+        # the bank may begin farther out
+        begins = np.abs(rise[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
+        return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
+            & (np.minimum(np.abs(typical), np.abs(tilt)) > SURFACE.min_tilt_change)
+
+
+def _lines(at, values, known):
+    """Level at 0 and slope of the straight lines of least squares through the known ones of values at (N,) places."""
+    count = np.maximum(known.sum(axis=2), 1)
+    values = np.where(known, values, 0.0)
+    middle, mean = (known * at).sum(axis=2) / count, values.sum(axis=2) / count
+    offset = known * (at - middle[..., None])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = (offset * values).sum(axis=2) / (offset * at).sum(axis=2)
+    return mean - slope * middle, slope
 
 
 def other_ground_begins(brightness: np.ndarray, track: np.ndarray, limit: np.ndarray) -> np.ndarray:

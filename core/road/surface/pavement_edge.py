@@ -1,6 +1,6 @@
 """Pavement edges: where a road without a curb ends at a verge, a ditch or a yard.
 
-The edge is a change of height, roughness or brightness across profiles of 5 m of road that continues along it. The rules are our own.
+The edge is a change of height, tilt, roughness or brightness across profiles of 5 m of road that continues along it. The rules are our own.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
                 max_width: float) -> _GrownLimit:
     """The limit of the road on a side without an edge.
 
-    Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the road or
+    Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the road, tilts away, or is
     rougher than the road before it. The path along the road that most profiles agree with is the limit. Where nothing was measured beyond, the limit
     may lie farther out. A strip of another brightness before the change (gravel along the asphalt) does not belong to the road either.
 
