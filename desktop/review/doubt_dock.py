@@ -451,9 +451,10 @@ class DoubtDock(QDockWidget):
         layer = self._layer_to_write()
         if layer is not None and self._may_replace([] if piece is None else [piece]):
             location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
-            pattern = {"pattern": "dashed" if seen.dashed else "solid"} if seen is not None and target == "marking" and action == "draw" else {}
+            measured = {} if seen is None else {"height_m": round(seen.step, 3)} if target == "edge" else \
+                {"pattern": "dashed" if seen.dashed else "solid"} if action == "draw" else {}
             self._write(layer, line, crs, self.made.get(id(piece)), action=action, target=target,
-                           note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **pattern)
+                           note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **measured)
             self.note.clear()
             self.corrected()
             if piece is not None and self.place is not None and piece in self.place.pieces:
