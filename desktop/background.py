@@ -63,6 +63,11 @@ class BackgroundRun:
         return (self.feedback.textLog().strip().splitlines() or [tr("cancelled")])[-1]
 
 
+def loaded(destination: str) -> QgsProcessingOutputLayerDefinition:
+    """An output that is put into the project when it is ready."""
+    return QgsProcessingOutputLayerDefinition(destination, QgsProject.instance())
+
+
 def with_points(title: str, clouds: Sequence[str], place: Sequence[float], radius: float, work: Callable[[Any], object],
                 ready: Callable[[QgsTask, object, str], None]) -> QgsTask:
     """Read the points about a place and work on them; keep the task, for QGIS keeps no reference, and cancel it when it is no longer wanted.
@@ -123,10 +128,10 @@ class SampleRun:
         if not fine:
             self._failed(made)
             return
-        layers = {name: _loaded(self.folder / "road_map.gpkg", name.lower()) for name in LAYERS}
+        layers = {name: loaded(table_of(self.folder / "road_map.gpkg", name.lower())) for name in LAYERS}
         self.running = BackgroundRun("roadmap", dict(
             POINT_CLOUDS=[made.parameters["POINT_CLOUD"]], TRAJECTORY=made.parameters["TRAJECTORY"],
-            INTENSITY_IMAGE=_loaded(self.folder / "intensity.tif"), REPORT=str(self.folder / "report.html"), **layers), self._mapped)
+            INTENSITY_IMAGE=loaded(str(self.folder / "intensity.tif")), REPORT=str(self.folder / "report.html"), **layers), self._mapped)
 
     def _mapped(self, mapped, fine):
         from processing.core.ProcessingResults import resultsList
@@ -144,11 +149,6 @@ class SampleRun:
     def _failed(self, run):
         self.running = None
         say(self.iface, tr("The sample survey was not mapped: {reason}").format(reason=run.reason), Qgis.MessageLevel.Warning)
-
-
-def _loaded(path, table=""):
-    """An output that is put into the project when it is ready."""
-    return QgsProcessingOutputLayerDefinition(table_of(path, table) if table else str(path), QgsProject.instance())
 
 
 def _remove(folder):

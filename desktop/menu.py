@@ -28,7 +28,6 @@ from ..processing_provider.results.road_maps import (
     NAMES_ONLY,
     REPLACES_LAST_RUN,
     RoadMap,
-    clouds_of,
     last_report,
     last_run,
     road_maps,
@@ -133,6 +132,7 @@ class Menu(QObject):
             from .review.section_dock import SectionDock
 
             self.section = SectionDock(self.iface)
+            self.section.corrected.connect(lambda: self.doubts.corrected() if self.doubts is not None else None)
         self.section.show()
         self.section.pick.click()
         if self.doubts is not None and self.doubts.isVisible() and self.doubts.seen is not None:
@@ -172,8 +172,9 @@ class Menu(QObject):
 
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
-            self.doubts.run_wanted.connect(self.run_again)
-            self.doubts.stage_wanted.connect(self.open_algorithm)
+            self.doubts.made_again.connect(lambda road_map: self.section.goes_on_in(road_map) if self.section is not None else None)
+            self.doubts.steps.run_wanted.connect(lambda: self.run_again(self.doubts.road_map, self.doubts.layer))
+            self.doubts.steps.stage_wanted.connect(self.open_algorithm)
         (self.doubts.show_steps if steps else self.doubts.go)(maps[0])
 
     def _road_maps(self):
@@ -192,9 +193,7 @@ class Menu(QObject):
         """Road map with all that a road map was made from, and the corrections made in it, if any."""
         from .review.steps import saved, values_again
 
-        clouds, missing = clouds_of(road_map, QgsProject.instance())
-        self.open_road_map(**{**values_again(road_map), **({} if missing else {"POINT_CLOUDS": clouds}),
-                              "CORRECTIONS": None if corrections is None else corrections.id()})
+        self.open_road_map(**values_again(road_map, corrections))
         places = saved(road_map)
         folders = [path.parent for path in map(destination_path, places.values()) if path is not None]
         if folders and self.dialog is not None:

@@ -71,7 +71,7 @@ DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not dr
 def _in_words(field):
     """The value of a field in the user's language, also of a layer that was made in another."""
     words = DIRECTIONS if field == "direction" else WORDS[field]
-    pairs = ", ".join("'{}', '{}'".format(value, label.replace("'", "''")) for value, label in words.items())
+    pairs = ", ".join("'{}', '{}'".format(value, retold(label).replace("'", "''")) for value, label in words.items())
     return f'coalesce(map_get(map({pairs}), to_string("{field}")), to_string("{field}"))'
 
 
@@ -283,7 +283,7 @@ def _name_figures(layer):
                 named.append(max(inside, key=lambda row: row.geometry().distance(middle)).id())
     settings, words = rule.settings(), _in_words("class")
     sign, laid, _ = layer.renderer().symbol().symbolLayer(0).geometryExpression().partition(LAID)
-    ways = ", ".join(f"'{way}'" for way in WAYS)
+    ways = ", ".join(f"'{retold(way)}'" for way in WAYS)
     settings.fieldName = f"if(\"class\" = 'arrow', {sign}THEN array({ways})[array_find(@fits, array_max(@fits)) % {len(WAYS)}] " \
                          f"ELSE '' END))))) END, {words})" if laid else words
     rule.setSettings(QgsPalLayerSettings(settings))

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import theilslopes
 
 from ..countries.catalogue import country
 from ..survey.frame.placement import PlaceIndex
@@ -38,13 +39,31 @@ class Seen:
 
 @dataclass(frozen=True)
 class _Mark:
-    """What is seen across one place: m left of it, strength in sigma, step (m) or brightness with a sign, width (m), and points."""
+    """What is seen across one place: m left of it, strength in sigma, step (m) or brightness with a sign, width (m), and points.
+
+    bottom, top : m, heights of both ends of a face; run : m that its top lies left of its bottom
+    """
 
     offset: float
     strength: float
     size: float
     width: float
     points: int
+    bottom: float = np.nan
+    top: float = np.nan
+    run: float = np.nan
+
+
+@dataclass(frozen=True)
+class Face:
+    """The face of a curb in a section, and the evidence for it."""
+
+    places: np.ndarray   # (2, 3) map coordinates of its bottom and its top
+    direction: float   # in which the curb runs, degrees clockwise from north
+    height: float   # m
+    sigma_height: float   # sigma_height, sigma_across: m, one sigma of its height, and of its bottom across the curb
+    sigma_across: float
+    points: int   # that it was measured from
 
 
 def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: Sequence[str] = ("edge", "marking")) -> Seen | None:
@@ -55,18 +74,58 @@ def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: S
     targets : what is sought, "edge", "marking" or both, of which the nearer and clearer one is taken
     """
     cloud = _Cloud(points)
-    starts = []
-    for target in targets:
-        for turn in np.arange(0.0, 180.0, PICK.turn):
-            mark = cloud.mark(target, x, y, azimuth + turn, PICK.click_reach)
-            if mark is not None:
-                starts.append((mark.strength * np.exp(-(mark.offset / PICK.near) ** 2), azimuth + turn, target, mark))
     # the direction of a low curb is told by how far it can be followed, not by one place of it
-    for _, direction, target, mark in sorted(starts, key=lambda start: -start[0])[:PICK.starts]:
+    for target, direction, mark in cloud.starts(targets, x, y, azimuth + np.arange(0.0, 180.0, PICK.turn), PICK.click_reach)[:PICK.starts]:
         seen = _measured(target, *cloud.followed(target, _beside((x, y), direction, mark.offset), direction, mark))
         if seen.seen >= PICK.shortest:
             return seen
     return None
+
+
+def face_at(points: np.ndarray, x: float, y: float, azimuth: float) -> Face | None:
+    """The face of a curb at a click in a section; None where no step of 2 cm within 0.3 m goes on for a metre along the road.
+
+    The bottom and the top are read off straight lines along the curb through what is seen 1.5 m either way (Theil-Sen [1]_), so that a wheel or a
+    tuft of grass at some of the places moves neither.
+
+    points : (N, 4) x, y, z and intensity about the click at x, y, m
+    azimuth : of the road there, degrees clockwise from north, which the section lies across; the curb may run otherwise
+
+    References
+    ----------
+    .. [1] Sen (1968), Journal of the American Statistical Association 63, 1379-1389.
+    """
+    cloud = _Cloud(points[(np.abs(points[:, :2] - (x, y)) <= PICK.course).all(axis=1)], PICK.section_step)
+    starts = cloud.starts(["edge"], x, y, azimuth + np.arange(-60.0, 61.0, PICK.turn), PICK.section_reach)
+    if not starts:
+        return None
+    _, direction, _ = starts[0]
+    ahead = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))])
+    left = np.array([-ahead[1], ahead[0]])
+    for _ in range(2):   # the second time along the curb itself, whose face is not blurred then
+        first = cloud.mark("edge", x, y, direction, PICK.section_reach)
+        if first is None:
+            return None
+        places, marks, along = cloud.followed("edge", _beside((x, y), direction, first.offset), direction, first)
+        near = np.flatnonzero(np.abs(along) <= PICK.course / 2)
+        if len(near) < PICK.fewest_places:
+            return None
+        at, across = ((places[near] - (x, y)) @ np.column_stack([ahead, left])).T
+        foot, slope, sigma_across = _line_at_0(at, across)
+        direction = azimuth - np.degrees(np.arctan(slope))
+    bottoms, tops, runs, formal, counts = np.array([
+        (marks[k].bottom, marks[k].top, marks[k].run, abs(marks[k].size) / marks[k].strength, marks[k].points) for k in near]).T
+    bottom, height, run = _line_at_0(at, bottoms)[0], float(np.median(tops - bottoms)), np.median(runs)
+    sigma_height = np.hypot(1.4826 * np.median(np.abs(tops - bottoms - height)), np.median(formal))
+    ends = np.array([[*((x, y) + offset * left), z + cloud.origin[2]] for offset, z in ((foot, bottom), (foot + run, bottom + height))])
+    sigma_across = np.hypot(sigma_across * np.cos(np.arctan(slope)), PICK.noise)
+    return Face(ends, float(direction), height, float(sigma_height), float(sigma_across), int(counts.sum()) // 2)
+
+
+def _line_at_0(at, values):
+    """Value at 0 and slope of the line through (K,) values that most of them agree on, and one sigma of a value about it."""
+    slope, value, _, _ = theilslopes(values, at)
+    return value, slope, 1.4826 * np.median(np.abs(values - value - slope * at))
 
 
 def snap_line(points: np.ndarray, places: np.ndarray, target: str) -> Seen | None:
@@ -114,9 +173,10 @@ def _beside(place, direction, offset):
 
 
 class _Cloud:
-    """Points by place."""
+    """Points by place. `lowest` : m of a step that counts"""
 
-    def __init__(self, points):
+    def __init__(self, points, lowest=PICK.lowest_step):
+        self.lowest = lowest
         points = points[::len(points) // PICK.most_points + 1]
         self.origin = points[:, :3].mean(axis=0) if len(points) else np.zeros(3)
         self.points = points - np.r_[self.origin, 0.0]
@@ -136,7 +196,13 @@ class _Cloud:
         near, across = near[inside], across[inside]
         ground = near[:, 2] <= np.quantile(near[:, 2], 0.02) + PICK.tallest
         across, z, intensity = across[ground], near[ground, 2], near[ground, 3]
-        return _step(across, z, reach) if target == "edge" else _stripe(across, intensity, reach)
+        return _step(across, z, reach, self.lowest) if target == "edge" else _stripe(across, intensity, reach)
+
+    def starts(self, targets, x, y, directions, reach):
+        """(target, direction, mark) of what is seen across a place in some directions, the clearest and nearest first."""
+        marks = [(target, direction, mark) for target in targets for direction in directions
+                 if (mark := self.mark(target, x, y, direction, reach)) is not None]
+        return sorted(marks, key=lambda start: -start[2].strength * np.exp(-(start[2].offset / PICK.near) ** 2))
 
     def followed(self, target, place, direction, first):
         """(K, 2) places of a line both ways from one of them, the marks seen, and m along it at which they were."""
@@ -186,8 +252,8 @@ class _Sums:
             return n, y + slope * (at - v), slope, rest / n * (1.0 + (at - v) ** 2 / sxx), y, syy
 
 
-def _step(across, z, reach):
-    """The clearest step of heights within `reach` m of 0."""
+def _step(across, z, reach, lowest):
+    """The clearest step of heights, of `lowest` m at least, within `reach` m of 0."""
     at = np.arange(-reach, reach + 1e-9, PICK.face / 4)
     sums = _Sums(across, z)
     n_left, left, left_slope, left_variance, _, _ = sums.line(at + PICK.face, at + PICK.face + PICK.flank, at)
@@ -195,24 +261,27 @@ def _step(across, z, reach):
     step = left - right
     with np.errstate(invalid="ignore"):
         strength = np.abs(step) / np.sqrt(left_variance + right_variance + PICK.noise ** 2)
-        possible = (np.minimum(n_left, n_right) >= PICK.fewest) & (np.abs(step) >= PICK.lowest_step) & (np.abs(step) <= PICK.highest_step) & \
+        possible = (np.minimum(n_left, n_right) >= PICK.fewest) & (np.abs(step) >= lowest) & (np.abs(step) <= PICK.highest_step) & \
             (strength >= PICK.certain) & (np.abs(step) >= PICK.knee * np.abs(left_slope - right_slope))
     if not possible.any():
         return None
     k = int(np.argmax(np.where(possible, strength, 0.0)))
+    sides = [(right[k], right_slope[k]), (left[k], left_slope[k])]
+    (low, slope), (high, upper_slope) = sides if step[k] > 0 else sides[::-1]
     # the share of the step that each point about the face lies above the low side; the face parts those below half of it from those above
-    low, slope = (right[k], right_slope[k]) if step[k] > 0 else (left[k], left_slope[k])
     near = np.argsort(across, kind="stable")
     near = near[np.abs(across[near] - at[k]) <= 2 * PICK.face]
     v, share = across[near], (z[near] - low - slope * (across[near] - at[k])) / abs(step[k])
     above = np.where(share > 0.5, 1, -1) * np.sign(step[k])
     wrong = np.cumsum(above)
-    foot = float(v[wrong == wrong.min()].mean())
-    face = (share > 0.15) & (share < 0.85) & (np.abs(v - foot) <= PICK.face + PICK.face / 4)
+    middle, run = float(v[wrong == wrong.min()].mean()), 0.0
+    face = (share > 0.15) & (share < 0.85) & (np.abs(v - middle) <= PICK.face + PICK.face / 4)
     # of a mountable curb its foot is meant; in a lower step noise looks like a lean
     if face.sum() >= PICK.fewest and np.ptp(share[face]) > 0.5 and abs(step[k]) >= 2 * PICK.lowest_step:
-        foot -= 0.5 * float(np.clip(np.polyfit(share[face], v[face], 1)[0], -2 * PICK.face, 2 * PICK.face))
-    return _Mark(foot, float(strength[k]), float(step[k]), np.nan, int(n_left[k] + n_right[k] + face.sum()))
+        run = float(np.clip(np.polyfit(share[face], v[face], 1)[0], -2 * PICK.face, 2 * PICK.face))
+    foot, head = middle - run / 2, middle + run / 2
+    return _Mark(foot, float(strength[k]), float(step[k]), np.nan, int(n_left[k] + n_right[k] + face.sum()),
+                 float(low + slope * (foot - at[k])), float(high + upper_slope * (head - at[k])), run)
 
 
 def _stripe(across, intensity, reach):

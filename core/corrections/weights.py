@@ -27,6 +27,9 @@ class PICK:
     """How a curb or a painted line is found about a click. The first four are the click's, the others those of one place across the line."""
 
     click_reach: float = 1.0   # m beside the click within which it is sought: at 1:500 that is 2 mm of the map
+    section_reach: float = 0.3   # m beside a click in a section, which is nearer to what is meant,
+    section_step: float = 0.02   # m, and shows lower steps
+    fewest_places: int = 3   # along a face, a metre of it: a step at one place alone is a stone
     turn: float = 15.0   # degrees between the directions that are tried; half of it blurs a face over a strip of 1 m by 13 cm, less than a flank
     starts: int = 6   # directions from which a line is followed, the clearest first
     shortest: float = 2.0   # m of a line that is seen, at least: four places that agree are no chance

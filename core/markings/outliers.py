@@ -124,17 +124,18 @@ def _kept_of_window(store, road, number, settings):
     s = records["s"] * COORDINATE_SCALE
     inner = np.flatnonzero((s >= number * OUTLIERS.window) & (s < (number + 1) * OUTLIERS.window))
     neighbours = Neighbours(_units(records), settings.neighbours)
-    distance = neighbours.distances()
     band = np.floor(records["d"].take(inner) * COORDINATE_SCALE / OUTLIERS.band)
     outliers = [np.empty(0, np.intp)]
     for value in np.unique(band):
         rows = inner[band == value]
         if len(rows) >= OUTLIERS.min_points_per_band:
-            sample = distance[rows[::max(len(rows) // MAX_LIMIT_SAMPLE, 1)]]
-            outliers.append(rows[distance[rows] > sample.mean() + settings.std_ratio * sample.std(ddof=1)])
+            distance = neighbours.distances(rows)
+            sample = distance[::max(len(rows) // MAX_LIMIT_SAMPLE, 1)]
+            outliers.append(rows[distance > sample.mean() + settings.std_ratio * sample.std(ddof=1)])
     outliers = np.concatenate(outliers)
     if len(outliers):  # what stands as far apart as its neighbours do is worn or far paint
-        outliers = outliers[distance[outliers] > OUTLIERS.sparseness_factor * np.median(distance[neighbours.of(outliers)[1]], axis=1)]
+        usual = np.median(neighbours.distances(neighbours.nearest(outliers)), axis=1)
+        outliers = outliers[neighbours.distances(outliers) > OUTLIERS.sparseness_factor * usual]
     keep = np.ones(len(inner), bool)
     keep[np.searchsorted(inner, outliers)] = False
     return keep
@@ -143,9 +144,10 @@ def _kept_of_window(store, road, number, settings):
 def _kept_of_all(points, settings):
     """(N,) bool of all points: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
     sections = [points.section(*key).records for key in points.all_sections()]
-    distance = Neighbours(np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)]), settings.neighbours).distances()
-    if len(distance) < 2:
-        return np.ones(len(distance), bool)
+    units = np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)])
+    if len(units) < 2:
+        return np.ones(len(units), bool)
+    distance = Neighbours(units, settings.neighbours).distances(np.arange(len(units)))
     return ~(distance > distance.mean() + settings.std_ratio * distance.std(ddof=1))
 
 
@@ -170,6 +172,7 @@ class Neighbours:
         self._k = max(min(k, len(units) - 1), 0)
         self._units = units - (units.min(axis=0) if len(units) else 0)
         self._rows = _in_tree(self._units, self._k)
+        self._means = np.full(len(units), np.nan if self._k else np.inf)   # NaN where they are not known yet
         self._tree: Any = None
         if self._k:
             coordinates = self._units.take(self._rows, axis=0)
@@ -179,33 +182,34 @@ class Neighbours:
             else:
                 self._tree = cKDTree(coordinates)
 
-    def of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean distance of some points to their nearest others, and which these are.
+    def _search(self, rows):
+        """Distances, in units, of some points to the nearest in the tree and rows of these there, (M, k + 1) each.
 
-        Returns
-            distances : (M,) m; inf where a point has no neighbour at all. The point
-                itself is left out, a second point at the very same place is not (as in PCL).
-            nearest : (M, k) indices
+        Each point is the first or, beside another at its place, one of the first of its own neighbours.
         """
-        if not self._k or not len(rows):
-            return np.full(len(rows), np.inf), np.empty((len(rows), self._k), np.intp)
         queries = self._units.take(rows, axis=0)
         if isinstance(self._tree, cKDTree):
-            distances, nearest = self._tree.query(queries, self._k + 1)
-        else:
-            nearest, squares = self._tree.knnSearch(queries.astype(np.float32), self._k + 1, params={})
-            distances = np.sqrt(squares)
-        # each point is the first or, beside another at its place, one of the first of its own neighbours
-        return distances.sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k), self._rows.take(nearest[:, 1:])
+            return self._tree.query(queries, self._k + 1)
+        nearest, squares = self._tree.knnSearch(queries.astype(np.float32), self._k + 1, params={})
+        return np.sqrt(squares), nearest
 
-    def distances(self) -> np.ndarray:
-        """(N,) m, the mean distance of every point to its nearest others."""
-        means = np.empty(len(self._units))
-        for first in range(0, len(means), QUERIES_PER_BLOCK):
+    def nearest(self, rows: np.ndarray) -> np.ndarray:
+        """(M, k) indices of the nearest others of some points."""
+        return self._rows.take(self._search(rows)[1][:, 1:]) if self._k and len(rows) else np.empty((len(rows), self._k), np.intp)
+
+    def distances(self, rows: np.ndarray) -> np.ndarray:
+        """m, the mean distance of some points to their nearest others, which is looked for once; of the shape of `rows`.
+
+        It is inf where a point has no neighbour at all. The point itself is left out, a second point at the very same place is not (as in PCL).
+        """
+        unknown = np.zeros(len(self._means), bool)
+        unknown[rows] = True
+        unknown = np.flatnonzero(unknown & np.isnan(self._means))
+        for first in range(0, len(unknown), QUERIES_PER_BLOCK):
             check_cancelled()
-            rows = np.arange(first, min(first + QUERIES_PER_BLOCK, len(means)))
-            means[rows] = self.of(rows)[0]
-        return means
+            asked = unknown[first:first + QUERIES_PER_BLOCK]
+            self._means[asked] = self._search(asked)[0].sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self._k)
+        return self._means.take(rows)
 
 
 def _in_tree(units, k):

@@ -103,7 +103,7 @@ class CURBS:
     height_node_spacing: float = 0.25   # m between the nodes of the expected height
     max_look_along: float = 4.0   # m along the road from the vehicle to a point that is used, plus as much as it lies across
     min_hidden_gap: float = 2.0   # m between curb points from which one may be hidden: as far apart as points of automatic blocks lie
-    max_hidden_gap: float = 30.0   # m between curbs within which hidden curb is reported
+    max_hidden_gap: float = 30.0   # m between curbs within which lowered curb is looked for, and one from an island's
     # blocks of a side
     pass_merge_across: float = 0.12   # m across, and
     pass_merge_height: float = 0.10   # m of height between the same step seen in two passes
@@ -154,7 +154,7 @@ class CURBS:
     line_fit_length: float = 10.0   # m of curb before and after a gap that give the line across it
     weight_length: float = 5.0   # m from the gap at which a place counts half
     min_bend_length: float = 3.0   # m of curb at an end from which its direction is known
-    max_line_gap: float = 50.0   # m between two stretches of one line: a row of parked cars
+    max_line_gap: float = 50.0   # m between two stretches of one line, and between curbs within which hidden curb is reported: a row of parked cars
     in_line_across: float = 0.08   # m from that line
     in_line_at_end: float = 0.03   # m from that line where a gap begins or ends, and
     in_line_drift: float = 0.01   # m more per m from the nearer end
@@ -509,7 +509,7 @@ class EDGE:
     min_hidden_share: float = 0.5   # share of a gap that must be hidden for a bridge of a pavement edge or of a boundary line
     hidden_curb_share: float = 0.33   # the same of a curb: where one goes on unseen, two fifths and more are hidden, at an opening next to nothing
     gap_end_allowance: float = 1.0   # m of a gap, half at each end, that need not be hidden
-    in_line_gap_factor: float = 2.0   # times the longest bridged gap that a curb may be hidden whose two parts lie in one line, turned by
+    in_line_gap_factor: float = 3.0   # times the longest bridged gap that an edge may be hidden whose two parts lie in one line
     max_edge_skew: float = 1.0   # m across per m along of a joined edge
     max_edge_jump: float = 0.25   # m across that two joined points may differ in any case
     bridge_spacing: float = 3.0   # m, about, between places on a line across a gap

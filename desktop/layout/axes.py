@@ -397,7 +397,10 @@ def _in_junction(place, axis, axes):
 
 
 def _sheet(places, axis, axes, width, height, number):
-    """The sheet turned by the chord of a stretch, and whether the road fits on it; roads beside it are shown as a whole where there is room."""
+    """The sheet turned by the chord of a stretch, and whether the road fits on it; roads beside it are shown as a whole where there is room.
+
+    A stretch that is shorter than the sheet lies where the sheet shows most of what goes on from it.
+    """
     chord = places[-1] - places[0]
     heading = math.atan2(chord[1], chord[0])
     turn = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
@@ -413,7 +416,11 @@ def _sheet(places, axis, axes, width, height, number):
             lower, upper = min(low, beside.min() - other.half_width), max(high, beside.max() + other.half_width)
             if upper - lower <= height * MOST_HEIGHT:
                 low, high = lower, upper
-    x, y = turn @ ((u + u2) / 2, (low + high) / 2)
+    free = max(width * (1 - OVERLAP / 2) - (u2 - u), 0.0) / 2
+    around = np.concatenate([other.places[:, :2] for other in axes]) @ turn
+    around = around[(np.abs(around[:, 1] - (low + high) / 2) < height / 2) & (around[:, 0] > u - 2 * free) & (around[:, 0] < u2 + 2 * free), 0]
+    middle = np.clip((around.min() + around.max()) / 2, (u + u2) / 2 - free, (u + u2) / 2 + free)
+    x, y = turn @ (middle, (low + high) / 2)
     return Sheet(number, float(x), float(y), heading, width, height), fits
 
 

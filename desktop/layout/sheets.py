@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from datetime import date
@@ -22,6 +23,7 @@ from qgis.core import (
     QgsLayoutPoint,
     QgsLayoutSize,
     QgsMapLayer,
+    QgsMapRendererCustomPainterJob,
     QgsPointXY,
     QgsPrintLayout,
     QgsProcessingFeatureSourceDefinition,
@@ -29,9 +31,10 @@ from qgis.core import (
     QgsProject,
     QgsRectangle,
     QgsUnitTypes,
+    QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QLocale, QMarginsF, QRectF, Qt
-from qgis.PyQt.QtGui import QColor, QPageLayout, QPageSize, QPainter, QPdfWriter
+from qgis.PyQt.QtCore import QLocale, QMarginsF, QRectF, QSizeF, Qt
+from qgis.PyQt.QtGui import QColor, QImage, QPageLayout, QPageSize, QPainter, QPdfWriter
 
 from ...algorithms.algorithm import MAP_LAYERS
 from ...algorithms.export import DRAWN, SheetSettings
@@ -83,6 +86,7 @@ GRID = 60.0           # mm between lines of the grid at least
 TICKS, LABELS = 5.0, 25.0   # mm between ticks and labels of stations at least
 MATCH = 50.0          # mm beside the road to which a match line reaches, with its text
 AXIS = "#b00020"
+LAID_OUT = 4.0         # pixels a mm at which labels are laid out to see which find room
 ROWS = (0.28, 0.18, 0.18, 0.18, 0.18)   # of the title block's height
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
 
@@ -280,7 +284,7 @@ class _Pages:
         if self.legend_on_sheets:
             add_legend(self.layout, self.classes, self._legend_room(frame), page)
         self._add_scale_and_north(chart, page, frame, self.scale, frame.band)
-        self._explain(paper, sheet)
+        self._explain(paper, chart)
         self._add_drawing(over, page, frame.map.x(), frame.map.y())
         self._add_drawing(paper, page)
 
@@ -378,18 +382,22 @@ class _Pages:
         width, height = bar.rect().width(), bar.rect().height()
         self._place(bar, page, *((x + 21 - width / 2, top + band - height - 3) if aside else (x + 45, top + 4)))
 
-    def _explain(self, paper, sheet):
-        """What the red line and the figures on the map say, between arrow and scale."""
+    def _explain(self, paper, chart):
+        """What the red line and those figures say that found room on the map, between arrow and scale."""
         x, y = self.frame.title_block(self.frame.band).left() - 40, self.frame.strip.top() + ARROW + 3.5
         paper.line([(x, y), (x + 8, y)], AXIS, 0.25, "5 1 0.6 1")
-        courses = [(line, shapely.LineString(line.places[:, :2])) for line in self.lines]
-        shown = [(line, course.length) for line, course in courses if sheet.outline().intersects(course)]
-        rows = [("", tr("Axis with stations"))] + [
-            (figure, text) for figure, text, least, output, name, lowest, shortest in (
-                ("R 85", tr("Radius (m)"), 1500, "DRIVING_LINES", "radius", 5.0, 0.0), ("3.40", tr("Width of the lane (m)"), 750, "DRIVING_LINES",
-                 "width", 0.0, 8.0), ("50 km/h", tr("Design speed"), 1500, "DRIVING_LINES", "design_kmh", 0.0, 0.0),
-                ("12 cm", tr("Height of the curb"), 400, "ROAD_EDGES", "height", 0.01, 6.0))   # where and down to which scale the styles write it
-            if self.scale <= least and any(line.output == output and line.number(name) > lowest and length > shortest for line, length in shown)]
+        settings = chart.mapSettings(chart.extent(), QSizeF(chart.rect().width(), chart.rect().height()) * LAID_OUT, 25.4 * LAID_OUT, True)
+        settings.setLayers([layer for layer in self.layers if isinstance(layer, QgsVectorLayer)])
+        settings.setFlag(Qgis.MapSettingsFlag.SkipSymbolRendering)
+        image = QImage(1, 1, QImage.Format.Format_RGB32)
+        painter = QPainter(image)
+        job = QgsMapRendererCustomPainterJob(settings, painter)
+        job.renderSynchronously()
+        painter.end()
+        figures = " · ".join(label.labelText for label in job.takeLabelingResults().allLabels())
+        rows = [("", tr("Axis with stations"))] + [(figure, text) for figure, text, pattern in (
+            ("R 85", tr("Radius (m)"), r"R \d"), ("3.40", tr("Width of the lane (m)"), r"(^|· )\d+[.,]\d\d( ·|$)"),
+            ("50 km/h", tr("Design speed"), r"\d km/h"), ("12 cm", tr("Height of the curb"), r"\d cm")) if re.search(pattern, figures)]
         for row, (figure, text) in enumerate(rows):
             paper.text(x, y + 2.6 * row, figure, 5.5, "start")
             paper.text(x + 10, y + 2.6 * row, text, 5.5, "start")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -17,28 +17,30 @@ from qgis.core import (
     QgsGeometry,
     QgsProject,
     QgsProviderRegistry,
-    QgsRectangle,
     QgsSpatialIndex,
     QgsUnitTypes,
     QgsVectorLayer,
     QgsVectorLayerExporter,
 )
+from qgis.PyQt.QtWidgets import QFileDialog, QWidget
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CORRECTIONS, OTHER
 from ...core.corrections.corrections import SEEN
 from ...processing_provider.call import qgis_fields
-from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to
+from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to, clouds_of
 from ...processing_provider.styling import PROVIDER, STYLES, apply_style, explain_readings
 from ...processing_provider.texts import tr
+from ..widgets import say
 from .doubtful import DoubtfulPiece
 
 NAME = "CORRECTIONS"
 TABLE = "corrections"
 NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
 SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
-CHANGED = "lanewright/changed/"      # custom property of the layer, with what the corrections are about: when one was made or taken back last
+CHANGES = "lanewright/changes"       # custom property of the layer: "time target xmin ymin xmax ymax" of what was made, moved or taken back
 WRITTEN = "lanewright/written"       # custom property of the layer: numbers of the rows that were written here, one a line; others are of colleagues
+FILE = "corrections.gpkg"
 MOVED = 2.0        # m that a piece is moved at most
 SAME_PLACE = 0.1   # m between two lines of which one is taken for the other
 
@@ -49,14 +51,45 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
     return [layer for layer in layers if NEEDED <= {field.name() for field in layer.fields()}]
 
 
-def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
-    """The layer with the corrections of a survey: one that names it, else one that names none and lies where the survey does."""
-    for layer in corrections_layers(project):
-        layer_survey = layer.customProperty(SURVEY)
-        if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
-                and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
+def layer_of(road_map: RoadMap | None) -> QgsVectorLayer | None:
+    """The layer with the corrections of a road map: one that names its survey, else one that names none and lies where it does; None for none."""
+    vectors = [] if road_map is None else road_map.vectors
+    for layer in corrections_layers(QgsProject.instance()) if vectors else ():
+        survey = layer.customProperty(SURVEY)
+        if survey == road_map.survey or not survey and layer.featureCount() > 0 \
+                and brought_to(vectors[0].extent(), vectors[0].crs(), layer.crs()).intersects(layer.extent()):
             return layer
     return None
+
+
+def ask_for_file(parent: QWidget, road_map: RoadMap | None, title: str, name: str, kind: str) -> str:
+    """The file that the user names, "" for none; offered is a name beside the project or the point clouds."""
+    clouds = [] if road_map is None else clouds_of(road_map, QgsProject.instance())[0]
+    folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
+    options = QFileDialog.Option.DontConfirmOverwrite if name == FILE else QFileDialog.Option(0)
+    path, _ = QFileDialog.getSaveFileName(parent, title, str(folder / name), kind, options=options)
+    suffix = Path(name).suffix
+    return path if not path or path.lower().endswith(suffix) else f"{path}{suffix}"
+
+
+def ask_for_corrections(parent: QWidget, road_map: RoadMap | None) -> str:
+    """Where the corrections are to be kept; "" where the user gave up."""
+    return ask_for_file(parent, road_map, tr("File for the corrections"), FILE, "GeoPackage (*.gpkg)")
+
+
+def layer_to_write(iface, road_map: RoadMap, ask: Callable[[], str]) -> QgsVectorLayer | None:
+    """The layer that corrections of a road map go to, made where there is none; None where `ask` names no file, or none that can be written."""
+    if (layer := layer_of(road_map)) is not None:
+        lay_above(layer, road_map, QgsProject.instance())
+        return layer
+    place = place_beside(road_map) or ask()
+    if not place:
+        return None
+    try:
+        return new_corrections_layer(QgsProject.instance(), place, road_map.vectors[0].crs(), road_map.survey)
+    except RoadExtractionError as problem:
+        say(iface, str(problem), Qgis.MessageLevel.Warning)
+        return None
 
 
 def _placed(line, crs, layer):
@@ -94,7 +127,7 @@ def new_corrections_layer(project: QgsProject, place: str, crs: QgsCoordinateRef
     source, provider = (f"{place}|layername={TABLE}", "ogr") if in_file else (place, PROVIDER)
     layer = QgsVectorLayer(source, tr("Corrections"), provider)
     if not layer.isValid() and not (in_file and Path(place).exists()):
-        exporter = QgsVectorLayerExporter(place, provider, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineString, crs, False,
+        exporter = QgsVectorLayerExporter(place, provider, qgis_fields(CORRECTIONS, with_aliases=False), Qgis.WkbType.LineStringZ, crs, False,
                                           {"driverName": "GPKG", "layerName": TABLE} if in_file else {})
         problem = exporter.errorMessage()
         del exporter  # writes what it has
@@ -128,8 +161,8 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
 
     former : an earlier decision about the same piece, which makes room for it; without, one of the same target at the same place does
     """
-    _note_change(layer, values)
     placed = _placed(line, crs, layer)
+    note_change(layer, values, placed)
     former = former or correction_at(layer, line, crs, str(values["target"]))
     values |= {"author": QgsApplication.userFullName() or QgsApplication.userLoginName(),
                "decided_at": f"{datetime.now(timezone.utc):%Y-%m-%d %H:%M:%S}"}
@@ -152,7 +185,7 @@ def add_correction(layer: QgsVectorLayer, line: QgsGeometry, crs: QgsCoordinateR
         layer.updateExtents()
     if former is not None:
         _delete(layer, [former.id()])
-    layer.setCustomProperty(WRITTEN, [*written_here(layer), feature.id()])
+    note_written(layer, [feature])
     if values.get(OTHER.name):
         explain_readings(layer)
     layer.triggerRepaint()
@@ -198,13 +231,14 @@ def review_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece], crs
     return decided, [(piece.target or piece.kind, piece.road, piece.station, piece.length, piece.doubt, piece.text) for piece in left]
 
 
-def take_back(layer: QgsVectorLayer) -> bool:
-    """Delete the correction that was made here last; False where there is none. Those of colleagues stay."""
+def take_back(layer: QgsVectorLayer, feature: QgsFeature | None = None) -> bool:
+    """Delete a correction, without one that which was made here last; False where there is none. Those of colleagues stay."""
     ids = written_here(layer)
-    if not ids:
+    if feature is None and not ids:
         return False
-    _note_change(layer, layer.getFeature(ids[-1]))
-    _delete(layer, ids[-1:])
+    feature = feature or layer.getFeature(ids[-1])
+    note_change(layer, feature, feature.geometry())
+    _delete(layer, [feature.id()])
     layer.triggerRepaint()
     return True
 
@@ -215,9 +249,31 @@ def written_here(layer: QgsVectorLayer) -> list[int]:
     return [number for number in map(int, layer.customProperty(WRITTEN) or ()) if number in there]
 
 
-def _note_change(layer, row):
+def note_written(layer: QgsVectorLayer, rows: Iterable[QgsFeature]) -> None:
+    """Note that rows were written in this project."""
+    layer.setCustomProperty(WRITTEN, [*written_here(layer), *(row.id() for row in rows)])
+
+
+def note_change(layer: QgsVectorLayer, row: QgsFeature | dict[str, object], where: QgsGeometry) -> None:
+    """Note that a correction has changed: what was made with it before no longer holds there."""
     if row["action"] != SEEN:
-        layer.setCustomProperty(f"{CHANGED}{row['target']}", datetime.now(timezone.utc).isoformat())
+        box = where.boundingBox()
+        corners = (f"{value:.9g}" for value in (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))
+        layer.setCustomProperty(CHANGES, [*changes_of(layer), " ".join((_now(), row["target"], *corners))])
+
+
+def changes_of(layer: QgsVectorLayer) -> list[str]:
+    """What has changed, as `CHANGES` has it."""
+    return [str(change) for change in layer.customProperty(CHANGES) or ()]
+
+
+def note_made(layer: QgsVectorLayer, count: int) -> None:
+    """Note that a run has made the first of its changes; what changed after it began counts as changed now, for the next run."""
+    layer.setCustomProperty(CHANGES, [f"{_now()} {change.split(' ', 1)[1]}" for change in changes_of(layer)[count:]])
+
+
+def _now():
+    return datetime.now(timezone.utc).isoformat()
 
 
 def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | None:
@@ -225,9 +281,9 @@ def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | N
 
     unmade : no run has made them yet, so that a row of which nothing is known counts as made now
     """
-    noted = layer.customProperty(f"{CHANGED}{target}")
-    if noted:
-        return datetime.fromisoformat(str(noted))
+    times = [when for when, of, *_ in map(str.split, changes_of(layer)) if of == target]
+    if times:
+        return datetime.fromisoformat(times[-1])
     return datetime.now(timezone.utc) if unmade and any(
         row["target"] == target and row["action"] != SEEN for row in layer.getFeatures()) else None
 

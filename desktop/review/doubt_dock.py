@@ -17,7 +17,6 @@ from qgis.PyQt.QtWidgets import (
     QCheckBox,
     QDockWidget,
     QDoubleSpinBox,
-    QFileDialog,
     QLabel,
     QLineEdit,
     QListWidget,
@@ -30,18 +29,20 @@ from qgis.PyQt.QtWidgets import (
 
 from ...core.common.errors import RoadExtractionError
 from ...core.corrections.corrections import SEEN, taken_reading
-from ...processing_provider.results.road_maps import RoadMap, clouds_of, road_maps
+from ...processing_provider.results.road_maps import RoadMap, Setting, road_maps
 from ...processing_provider.styling import WORDS
 from ...processing_provider.texts import tr
 from ...products.report.review import review_report
 from ..widgets import button, choices, column, give_map_back, open_file, row, say, show_extent, take_map, wrapped
 from .corrections_layer import (
     add_correction,
+    ask_for_corrections,
+    ask_for_file,
     corrections_of,
-    corrections_of_survey,
-    lay_above,
-    new_corrections_layer,
-    place_beside,
+    layer_of,
+    layer_to_write,
+    note_change,
+    note_written,
     place_of,
     review_of,
     take_back,
@@ -49,6 +50,7 @@ from .corrections_layer import (
 )
 from .doubtful import Doubt, DoubtfulPiece, doubts_of
 from .photos import PhotoButton, photo_of
+from .remaking import Remaking
 from .smart_pick import evidence, pick, prepare, snap
 from .steps import STALE, StepsPanel, steps_of
 
@@ -56,21 +58,19 @@ ARRIVED = 700   # ms after the last layer of a run that came into the project
 LONG_PLACE = 80.0   # m: of a longer place the map shows the selected piece alone, or it would be too small to judge
 MOST_LETTERS = 200   # of what is doubtful in the list; pointing at it shows all of it
 LEAST_VIEW = 30.0   # m of ground shown about a place
-FILE = "corrections.gpkg"
 CHOSEN = "#6eff00c8"  # pieces that the buttons are about
+AT_ONCE = Setting("made_at_once")
 KIND, LENGTH = "lanewright/doubts/kind", "lanewright/doubts/shortest"   # settings: what is gone through
 
 
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
-    Where the map is made again while the window is open, the window goes on in the new one.
+    Signal `shown` has the place. Where the map is made again while the window is open, it goes on in the new one, which `made_again` has.
     """
 
     shown = pyqtSignal(object)
-    run_wanted = pyqtSignal(object, object)
-    stage_wanted = pyqtSignal(str, dict)
+    made_again = pyqtSignal(object)
 
     def __init__(self, iface):
         super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
@@ -134,17 +134,18 @@ class DoubtDock(QDockWidget):
         self.hint = QLabel(wordWrap=True, styleSheet="background: #fff3c4; color: #222222; padding: 4px", visible=False)
         self.kept = wrapped()
         self.undo_button = self._button(tr("Take back the last"), tr("Removes the correction that was made last"), self.undo)
-        self.run_button = self._button(tr("Make the map again…"), tr("Opens Road map with these corrections"),
-                                       lambda: self.run_wanted.emit(self.road_map, self.layer))
+        self.vertex_button = self._button(tr("Vertices"), tr("Drag the vertices of corrections with QGIS's tool; once more keeps them"),
+                                          self.drag_vertices, "V")
+        self.run_button = self._button(tr("Make again"), tr("Makes the map again with the corrections, while you go on"), self.make_again, "R")
+        self.at_once = QCheckBox(tr("At once"), toolTip=tr("After every correction"), checked=AT_ONCE.holds(), toggled=AT_ONCE.keep)
+        self.remaking = Remaking(self.iface)
         self.report_button = self._button(tr("Report…"), tr("A page with what was decided, by kind and by person, and what is left"),
                                           self.write_report)
         body = column(QWidget(), row(back, ahead, self.where), row(self.kinds, self.order), row(self.undecided, self.shortest), (self.list, 1),
                       self.photo, row(self.accept_button, self.delete_button, self.move_button, self.other_button),
                       row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, row(self.kept, self.report_button),
-                      row(self.undo_button, self.run_button))
+                      row(self.undo_button, self.vertex_button, self.run_button, self.at_once), self.remaking)
         self.steps = StepsPanel()
-        self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
-        self.steps.stage_wanted.connect(self.stage_wanted)
         self.tabs = QTabWidget(documentMode=True)
         self.tabs.addTab(body, tr("Doubtful places"))
         self.tabs.addTab(self.steps, tr("Steps"))
@@ -167,6 +168,7 @@ class DoubtDock(QDockWidget):
         self._stop_drawing()
         self._unlight()
         self._stop_looking()
+        self.remaking.forget()
         self.iface.removeDockWidget(self)
 
     def _forget(self, removed):
@@ -190,13 +192,12 @@ class DoubtDock(QDockWidget):
         survey, place = self.left if self.road_map is None else (self.road_map.survey, self.place)
         newer = next((one for one in road_maps(QgsProject.instance()) if one.survey == survey and one.has_any(arrived)), None)
         if newer is not None:
-            self._stop_drawing()
             self._of = None
             self._take(newer)
             if place is not None and self.places:
                 self.at = min(range(len(self.places)), key=lambda at: self.places[at].middle.distance(place.middle))
                 self.seen = self.place
-                self.shown.emit(self.seen)
+            self.made_again.emit(newer)
             self._fill()
             if not self.isHidden():
                 self._come_to_front()
@@ -369,27 +370,14 @@ class DoubtDock(QDockWidget):
     @property
     def layer(self) -> QgsVectorLayer | None:
         """The layer that corrections of this survey go to, None before the first."""
-        vectors = [] if self.road_map is None else self.road_map.vectors
-        if not vectors:
-            return None
-        return corrections_of_survey(QgsProject.instance(), self.road_map.survey, vectors[0].extent(), vectors[0].crs())
+        return layer_of(self.road_map)
 
     def ask_for_file(self) -> str:
         """Where the corrections are to be kept; "" where the user gave up."""
-        return self._file(tr("File for the corrections"), FILE, "GeoPackage (*.gpkg)")
+        return ask_for_corrections(self, self.road_map)
 
     def _layer_to_write(self):
-        if (layer := self.layer) is not None:
-            lay_above(layer, self.road_map, QgsProject.instance())
-            return layer
-        place = place_beside(self.road_map) or self.ask_for_file()
-        if not place:
-            return None
-        try:
-            return new_corrections_layer(QgsProject.instance(), place, self.road_map.vectors[0].crs(), self.road_map.survey)
-        except RoadExtractionError as problem:
-            say(self.iface, str(problem), Qgis.MessageLevel.Warning)
-            return None
+        return layer_to_write(self.iface, self.road_map, self.ask_for_file)
 
     def decide(self, action: str) -> None:
         """Accept or delete what is selected or take its other reading, and go on to the next piece that is not decided, here or at the next place."""
@@ -405,6 +393,7 @@ class DoubtDock(QDockWidget):
                 "action": action if piece.target else SEEN, "target": piece.target or piece.kind, "road": piece.road, "station_m": piece.station,
                 "offset_m": piece.offset, "note": self.note.text() or None, **reading})
         self.note.clear()
+        self.corrected()
         self._go_on(max(place.pieces.index(piece) for piece in pieces))
 
     def _write(self, *row, **values):
@@ -466,6 +455,7 @@ class DoubtDock(QDockWidget):
             self._write(layer, line, crs, self.made.get(id(piece)), action=action, target=target,
                            note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **pattern)
             self.note.clear()
+            self.corrected()
             if piece is not None and self.place is not None and piece in self.place.pieces:
                 self._go_on(self.place.pieces.index(piece))
                 return
@@ -527,25 +517,43 @@ class DoubtDock(QDockWidget):
     def undo(self) -> None:
         """Take back the correction that was made last."""
         if self.layer is not None and take_back(self.layer):
-            self._fill()
+            self.corrected()
+
+    def drag_vertices(self) -> None:
+        """Take up QGIS's vertex tool on the corrections; where it is taken up already, keep what was dragged."""
+        layer = self.layer
+        if layer.isEditable():
+            layer.commitChanges()
+            self.hint.hide()
+            self.iface.actionPan().trigger()
+            self.corrected()
+            return
+        layer.committedGeometriesChanges.connect(lambda name, moved: [note_change(layer, layer.getFeature(row), line) for row, line in moved.items()])
+        layer.committedFeaturesAdded.connect(lambda name, rows: note_written(layer, rows))   # what is saved has other numbers
+        self.iface.setActiveLayer(layer)
+        layer.startEditing()
+        self.iface.actionVertexToolActiveLayer().trigger()
+        self._say(tr("Click a vertex and click where it belongs; Ctrl+Z takes it back. V keeps what was dragged."))
+
+    def make_again(self) -> None:
+        """Make the map again with its corrections, in the background."""
+        if self.layer is not None:
+            self.remaking.ask(self.road_map, self.layer)
+
+    def corrected(self) -> None:
+        """List what was corrected, and make it on wish."""
+        self._fill(max(self.list.currentRow(), 0))
+        if self.at_once.isChecked():
+            self.make_again()
 
     def write_report(self) -> None:
         """What was decided and what is left, as a page in the file that the user names, shown in the browser."""
-        path = self._file(tr("Report of the review"), f"{tr('Review')} {self.road_map.survey}.html", "HTML (*.html)")
+        path = ask_for_file(self, self.road_map, tr("Report of the review"), f"{tr('Review')} {self.road_map.survey}.html", "HTML (*.html)")
         if path:
             pieces = [piece for place in doubts_of(self.road_map) for piece in place.pieces]
             Path(path).write_text(review_report(self.road_map.survey, "" if self.layer is None else place_of(self.layer), *review_of(
                 self.layer, pieces, self.road_map.vectors[0].crs())), encoding="utf-8")
             open_file(self.iface, path)
-
-    def _file(self, title, name, kind):
-        """The file that the user names, "" for none; offered is a name beside the project or the point clouds."""
-        clouds = [] if self.road_map is None else clouds_of(self.road_map, QgsProject.instance())[0]
-        folder = Path(QgsProject.instance().absolutePath() or (Path(clouds[0]).parent if clouds else Path.home()))
-        options = QFileDialog.Option.DontConfirmOverwrite if name == FILE else QFileDialog.Option(0)
-        path, _ = QFileDialog.getSaveFileName(self, title, str(folder / name), kind, options=options)
-        suffix = Path(name).suffix
-        return path if not path or path.lower().endswith(suffix) else f"{path}{suffix}"
 
     def _tell(self):
         """How many corrections there are, and what to do with them."""
@@ -553,8 +561,9 @@ class DoubtDock(QDockWidget):
             self.steps.show_map(self.road_map, self.layer)
         count = 0 if (layer := self.layer) is None else len(layer.allFeatureIds())   # asked of the database: a colleague adds to it
         self.undo_button.setEnabled(count > 0 and bool(written_here(layer)))
+        self.vertex_button.setEnabled(count > 0)
         self.report_button.setEnabled(self.road_map is not None)
-        self.run_button.setEnabled(count > 0)
+        self.run_button.setEnabled(layer is not None)
         waits = count and any(step.colour == STALE for step in steps_of(self.road_map, layer))
         text = tr("No corrections yet.") if not count else tr("Corrections in {file}: {count}. They come into the map when it is made again.") \
             if waits else tr("Corrections in {file}: {count}. They are in this map.")

@@ -28,7 +28,9 @@ REACH = 60.0          # m about a place within which the road's direction is sou
 LEADING = ("DRIVING_LINES", "ROAD_EDGES", "BOUNDARIES", "MARKING_LINES", "TRAJECTORY")  # lines that run along the road, best first
 CORNERS = ("CURB_POINTS", "CORNERS")
 CORNERS_WITHIN = 0.5  # m along the road
-DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES": "#00a651"}
+TOUCHES = 0.002       # m before a section at which a line may end that crosses it: one that was drawn in sections ends in one
+DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES": "#00a651",
+         "CORRECTIONS": "#d0006f"}
 
 
 @dataclass(frozen=True)
@@ -115,8 +117,8 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         title = titles_of(layer)
-        for feature in layer.getFeatures(line.boundingBox()):
-            intersection = feature.geometry().intersection(line)
+        for feature in layer.getFeatures(line.boundingBox().buffered(TOUCHES)):
+            intersection = feature.geometry().extendLine(TOUCHES, TOUCHES).intersection(line)
             for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)
                 result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title(feature), colour, z + _curb_height(feature)))
@@ -155,11 +157,11 @@ def _curb_height(feature):
 
 
 def _height(geometry, vertex):
-    """z of a line at a place on it; NaN where it has none."""
+    """z of a line at a place on it; NaN where it has none, as of one that was drawn in the map, where it is 0."""
     along = geometry.lineLocatePoint(QgsGeometry(QgsPoint(vertex.x(), vertex.y())))
     on_line = geometry.interpolate(along)  # its point lives no longer than it
     point = on_line.constGet()
-    return point.z() if point is not None and point.is3D() else math.nan
+    return point.z() if point is not None and point.is3D() and point.z() != 0.0 else math.nan
 
 
 def titles_of(layer: QgsVectorLayer) -> Callable[[QgsFeature], str]:

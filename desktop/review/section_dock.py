@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsPointXY, QgsProject
 from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
-from qgis.PyQt.QtCore import QPointF, QRectF, Qt
-from qgis.PyQt.QtGui import QColor, QCursor, QFont, QFontMetricsF, QImage, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
-from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QToolTip, QWidget
+from qgis.PyQt.QtCore import QEvent, QPointF, QRectF, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QCursor, QFont, QFontMetricsF, QImage, QKeySequence, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
+from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QDoubleSpinBox, QFileDialog, QLabel, QToolTip, QWidget
 
 from ...core.common.arrays import round_step
 from ...core.road.scanlines.section_planes import slice_lines
@@ -20,8 +20,10 @@ from ...core.survey.frame.placement import PlaceIndex
 from ...processing_provider.results.road_maps import RoadMap, clouds_lie_in, clouds_of, road_maps
 from ...processing_provider.texts import numbers, tr
 from ..background import with_points
-from ..widgets import button, column, give_map_back, row, take_map
+from ..widgets import button, column, give_map_back, row, take_map, wrapped
+from .corrections_layer import ask_for_corrections, layer_of
 from .section import HALF_WIDTH, Crossing, Section, corners, crossings, middle_of, section_at
+from .section_curb import CurbLine
 
 AROUND = 40.0    # m of road kept in memory either side of a place, so that stepping along it needs no new reading
 STEP = 1.0       # m of a step along the road
@@ -30,12 +32,20 @@ THICKNESS = 0.3  # m along the road that a section takes points from
 
 
 class SectionDock(QDockWidget):
-    """The window; `show_at` shows a place."""
+    """The window; `show_at` shows a place. Signal `corrected` is sent when a curb was drawn in it."""
+
+    corrected = pyqtSignal()
 
     def __init__(self, iface):
         super().__init__(tr("Cross-section"), iface.mainWindow(), objectName="LanewrightCrossSection")
         self.iface = iface
         self.view = SectionView()
+        self.curb = CurbLine(self)
+        self.view.clicked.connect(lambda offset: self._tell(self.curb.click(offset)) if self.task is None and self._kept is not None else None)
+        for signal, what in ((self.view.kept, self.curb.keep), (self.view.dropped, self.curb.drop), (self.view.undone, self.curb.undo)):
+            signal.connect(lambda what=what: self._tell(what()))
+        self.said = wrapped()
+        self.ask_for_file = lambda: ask_for_corrections(self, self.road_map)
         self.tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.show_at(
             point, iface.mapCanvas().mapSettings().destinationCrs()))
         self.band = None
@@ -50,7 +60,9 @@ class SectionDock(QDockWidget):
             arrow.setToolTip(f"{arrow.toolTip()} ({key})")
         self.thickness = QDoubleSpinBox(minimum=0.02, maximum=5.0, singleStep=0.05, value=THICKNESS, suffix=" m", toolTip=tr(
             "Length of road from which points are shown"), valueChanged=lambda value: self._draw())
-        self.setWidget(column(QWidget(), row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None), (self.view, 1), rim=4))
+        buttons = row(self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness, None)
+        buttons.addWidget(self.said, 1)
+        self.setWidget(column(QWidget(), buttons, (self.view, 1), rim=4))
         iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         iface.mainWindow().resizeDocks([self], [int(SHARE * iface.mainWindow().height())], Qt.Orientation.Vertical)
         self.visibilityChanged.connect(self._hide_line)
@@ -76,6 +88,7 @@ class SectionDock(QDockWidget):
 
     def show_at(self, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> None:
         """The section through a place of the map."""
+        self.said.clear()
         for road_map in road_maps(QgsProject.instance(), self.iface.activeLayer()):
             layers = road_map.vectors
             try:
@@ -96,8 +109,13 @@ class SectionDock(QDockWidget):
         turned = section_at(x, y, self.road_map.vectors)
         self._show(turned or Section(x, y, self.section.azimuth), self.road_map)
 
+    def goes_on_in(self, road_map: RoadMap) -> None:
+        """Show the same section of a map that was made again."""
+        if self.section is not None and self.isVisible():
+            self._show(self.section, road_map)
+
     def _show(self, section: Section, road_map: RoadMap) -> None:
-        self.section, self.road_map = section, road_map
+        self.section, self.road_map, self.curb.face = section, road_map, None
         self.show()
         if self.band is None:
             self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
@@ -155,15 +173,26 @@ class SectionDock(QDockWidget):
         self._kept, self._kept_at = points, place
         self._draw()
 
+    def points_about(self, x: float, y: float) -> np.ndarray:
+        """(N, 4) x, y, z and intensity of the points kept about a place."""
+        return self._kept.points[self._kept.index.within(np.array([x, y]) - AROUND / 8, np.array([x, y]) + AROUND / 8)]
+
+    def _tell(self, text):
+        self.said.setText(text)
+        self._draw()
+
     def _draw(self, message=""):
         if self.section is None:
             return
         points = self._kept.cut(self.section, self.thickness.value()) if self._kept is not None and not message else np.empty((0, 3))
-        layers = self.road_map.vectors
+        layers, drawn = self.road_map.vectors, layer_of(self.road_map)
+        layers += [drawn] if drawn is not None and drawn.crs() == layers[0].crs() else []
         lines = crossings(self.section, layers)
         middle = middle_of(lines)
         scanline = [line + (middle, 0.0) for line in slice_lines(points[:, 0] - middle, points[:, 1], 2 * HALF_WIDTH)]
         self.view.show_section(points, lines, message or tr("No points lie here."), scanline, corners(self.section, layers))
+        face = () if self.curb.face is None else self.curb.face.places
+        self.view.show_face([(self.section.offset(x, y), z) for x, y, z in face])
 
     def _hide_line(self, visible):
         if self.band is not None:
@@ -196,21 +225,29 @@ NEAREST = 1.0            # m of width that zooming ends at
 PAPER, INK, LABEL = QColor("#ffffff"), QColor("#222222"), QColor(255, 255, 255, 215)
 CAPTION = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
 TRIANGLE = QPolygonF([QPointF(-5, 5), QPointF(5, 5), QPointF(0, -4)])   # of the top of a curb
-SCANLINE, CORNER = QColor("#e07b00"), QColor("#8e24aa")
+SCANLINE, CORNER, FACE = QColor("#e07b00"), QColor("#8e24aa"), QColor("#d0006f")
 
 
 class SectionView(QWidget):
-    """Points of a section by offset and height; the wheel zooms, dragging moves, pointing reads offset and height."""
+    """Points of a section by offset and height; the wheel zooms, dragging moves, pointing reads offset and height.
+
+    Signal `clicked` has the offset of a click; `kept`, `dropped` and `undone` are sent for Enter, Esc and Ctrl+Z.
+    """
+
+    clicked = pyqtSignal(float)
+    kept, dropped, undone = pyqtSignal(), pyqtSignal(), pyqtSignal()
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setMinimumSize(320, 180)
         self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.points, self.crossings, self.scanline, self.corners = np.empty((0, 3)), [], [], []
+        self.face: list[tuple[float, float]] = []   # (offset, z) of bottom and top of a face that was found
         self.message = tr("Click on the road in the map.")
         self.centre, self.half = 0.0, 8.0   # m: middle and half of what is shown across
         self.low, self.high = 0.0, 1.0
-        self._dragged = None
+        self._pressed = self._dragged = None
 
     def show_section(self, points: np.ndarray, crossings: list[Crossing], message: str = "", scanline: Sequence[np.ndarray] = (),
                      corners: Sequence[tuple[float, float, str]] = ()) -> None:
@@ -220,6 +257,11 @@ class SectionView(QWidget):
         """
         self.points, self.crossings, self.message, self.scanline, self.corners = points, crossings, message, list(scanline), list(corners)
         self._fit_heights()
+        self.update()
+
+    def show_face(self, ends: Sequence[tuple[float, float]]) -> None:
+        """Show (offset, z) of bottom and top of a face; none where there are none."""
+        self.face = list(ends)
         self.update()
 
     # -- metres and pixels --------------------------------------------------------------------------
@@ -278,7 +320,10 @@ class SectionView(QWidget):
         self._draw_points(painter, frame)
         self._draw_scanline(painter)
         self._draw_crossings(painter, frame)
-        self._draw_corners(painter)
+        self._draw_corners(painter, CORNER, self.corners)
+        painter.setPen(QPen(FACE, 3))
+        painter.drawPolyline(QPolygonF([QPointF(*self._at(*end)) for end in self.face]))
+        self._draw_corners(painter, FACE, [(*end, part) for end, part in zip(self.face, ("bottom", "top"))])
 
     def _draw_axes(self, painter, frame):
         painter.setFont(self._small())
@@ -365,11 +410,11 @@ class SectionView(QWidget):
             boxes.append(next(box for box in rows if not any(box.intersects(earlier) for earlier in boxes)))
         return boxes
 
-    def _draw_corners(self, painter):
+    def _draw_corners(self, painter, colour, corners):
         """Corners of curbs: bottoms as full circles, tops as full triangles."""
         painter.setPen(QPen(PAPER, 1))
-        painter.setBrush(CORNER)
-        for offset, z, part in self.corners:
+        painter.setBrush(colour)
+        for offset, z, part in corners:
             centre = QPointF(*self._at(offset, z))
             if part == "top":
                 painter.drawPolygon(TRIANGLE.translated(centre))
@@ -388,10 +433,25 @@ class SectionView(QWidget):
         self.update()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        self._dragged = event.pos()
+        self._pressed = self._dragged = event.pos()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self._dragged = None
+        pressed, self._pressed, self._dragged = self._pressed, None, None
+        if pressed is not None and event.button() == Qt.MouseButton.LeftButton and len(self.points) and \
+                (event.pos() - pressed).manhattanLength() < QApplication.startDragDistance():
+            self.clicked.emit(self._metres(event.pos().x(), event.pos().y())[0])
+
+    def event(self, event: QEvent) -> bool:
+        """While the picture has the focus Enter, Esc and Ctrl+Z are for what is drawn in it, and not for QGIS."""
+        if event.type() in (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress):
+            signal = self.undone if event.matches(QKeySequence.StandardKey.Undo) else \
+                {Qt.Key.Key_Return: self.kept, Qt.Key.Key_Enter: self.kept, Qt.Key.Key_Escape: self.dropped}.get(event.key())
+            if signal is not None:
+                event.accept()
+                if event.type() == QEvent.Type.KeyPress:
+                    signal.emit()
+                return True
+        return super().event(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         frame = self._frame()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from qgis.core import (
@@ -53,7 +54,7 @@ def pick(road_map: RoadMap, corrections: QgsVectorLayer | None, point: QgsPointX
             problem = tr("The map has this line already.")
         ready(task, None if problem else seen, line, problem)
 
-    return _look(road_map, place, AROUND, partial(_in_metres, work, _metres(road_map)), looked)
+    return _look(road_map, place, AROUND, partial(in_metres, work, metres_of(road_map)), looked)
 
 
 def prepare(road_map: RoadMap, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> QgsTask | None:
@@ -74,11 +75,11 @@ def snap(road_map: RoadMap, line: QgsGeometry, crs: QgsCoordinateReferenceSystem
         kept = "" if seen else tr("Kept as it was drawn: nothing is seen along it.")
         ready(task, seen, _line_of(seen) if seen else drawn, problem or kept)
 
-    metres = _metres(road_map)
-    return _look(road_map, box.center(), max(box.width(), box.height()) / 2 * metres + BESIDE, partial(_in_metres, work, metres), looked)
+    metres = metres_of(road_map)
+    return _look(road_map, box.center(), max(box.width(), box.height()) / 2 * metres + BESIDE, partial(in_metres, work, metres), looked)
 
 
-def _metres(road_map):
+def metres_of(road_map: RoadMap) -> float:
     """m of a unit of the map."""
     return QgsUnitTypes.fromUnitToUnitFactor(road_map.vectors[0].crs().mapUnits(), Qgis.DistanceUnit.Meters)
 
@@ -90,8 +91,8 @@ def _look(road_map, place, radius, work, ready):
     return with_points(tr("Smart pick"), clouds, (place.x(), place.y()), radius, work, ready)
 
 
-def _in_metres(work, metres, points):
-    """What the core finds in metres, in the units of the map."""
+def in_metres(work: partial, metres: float, points: np.ndarray) -> Any:
+    """What the core finds in metres about a place or along places, in the units of the map; None where it finds nothing."""
     scale = np.array([metres, metres, metres, 1.0])
     given = {name: value * metres if name in ("x", "y", "places") else value for name, value in work.keywords.items()}
     seen = work.func(points * scale, **given)

@@ -16,7 +16,7 @@ from ...algorithms.algorithm import SettingSpec
 from ...algorithms.catalogue import ALGORITHMS
 from ...algorithms.destinations import table_of
 from ...algorithms.survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS
-from ...processing_provider.results.road_maps import CLOUDS, RoadMap, origin_of
+from ...processing_provider.results.road_maps import CLOUDS, RoadMap, clouds_of, origin_of
 from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
 from ..dialogs.algorithm_dialog import table_of_database
@@ -86,12 +86,16 @@ def _settings(declared, values):
             yield spec.label, text, value != spec.default
 
 
-def values_again(road_map: RoadMap) -> dict[str, object]:
-    """{parameter: value} of the run of a road map, with the settings of steps that were run again by themselves, and where its results lie."""
+def values_again(road_map: RoadMap, corrections: QgsVectorLayer | None = None) -> dict[str, object]:
+    """{parameter: value} of the run of a road map, with the settings of steps that were run again by themselves, and where its results lie.
+
+    Its point clouds are those where they lie now; `corrections` : made in the map, if any
+    """
     values = road_map.values
     for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
         values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
-    return {**values, **saved(road_map)}
+    clouds, missing = clouds_of(road_map, QgsProject.instance())
+    return {**values, **({} if missing else {CLOUDS: clouds}), NAME: None if corrections is None else corrections.id(), **saved(road_map)}
 
 
 def saved(road_map: RoadMap) -> dict[str, str]:

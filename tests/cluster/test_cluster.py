@@ -16,10 +16,11 @@ import fiona
 import numpy as np
 import pytest
 from curbed_streets import street, survey_of
-from executed_boundaries import Heard, numbers_of
 from executed_boundaries import boundaries as boundaries_by
+from executed_boundaries import numbers_of
 from executed_stages import PHASES as STAGE_PHASES
 from executed_stages import found_by, functions_of
+from heard import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing

@@ -11,7 +11,7 @@ import pytest
 from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
-from lanewright.desktop.review import smart_pick
+from lanewright.desktop.review import remaking, smart_pick
 from lanewright.desktop.review.corrections_layer import add_correction, corrections_layers, corrections_of, new_corrections_layer
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
@@ -19,9 +19,9 @@ from lanewright.processing_provider.results.road_maps import clouds_lie_in, road
 from lanewright.processing_provider.styling import second_reading
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsProviderRegistry, QgsRectangle, QgsSettings, QgsVectorLayer
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
-from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
-from qgis.PyQt.QtGui import QImage
-from qgis.PyQt.QtWidgets import QMainWindow
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QAction, QImage
+from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
 from road_map_layers import EAST, NORTH, added, run_at
 
 
@@ -368,6 +368,160 @@ def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_of
         over_points.undo()
 
 
+# -- making it again, and vertices
+
+class Task(QObject):
+    progressChanged = pyqtSignal(float)
+    canceled = False
+
+    def cancel(self):
+        self.canceled = True
+
+    def isCanceled(self):
+        return self.canceled
+
+
+@pytest.fixture
+def runs(at_first, monkeypatch):
+    """The runs that the window began: none of them does anything until it is ended by its function `ended(fine)`."""
+    begun = []
+
+    class Run:
+        reason = "The disk is full."
+
+        def __init__(self, name, parameters, ended):
+            self.parameters, self.task, self.loaded = parameters, Task(), []
+            self.ended = lambda fine: ended(self, fine)
+            begun.append(self)
+
+        def load_results(self):
+            self.loaded.append(True)
+
+    monkeypatch.setattr(remaking, "BackgroundRun", Run)
+    at_first.iface.mainWindow().show()
+    return begun
+
+
+def test_the_corrected_stretch_is_made_again_while_one_goes_on_and_what_is_corrected_meanwhile_is_next(at_first, runs):
+    at_first.list.setCurrentRow(1)
+    at_first.delete_button.click()   # a lane from 14 to 22 m
+    at_first.run_button.click()
+    line = at_first.remaking
+    assert line.isVisible() and line.said.text() == "road 0, 14–22 m is being made again."
+    assert runs[0].parameters["CORRECTIONS"] == at_first.layer.id() and {"ROAD_EDGES", "DRIVING_LINES"} <= set(runs[0].parameters)
+    runs[0].task.progressChanged.emit(40.0)
+    assert line.bar.value() == 40
+    at_first.list.setCurrentRow(0)
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    at_first.run_button.click()
+    assert len(runs) == 1 and "corrected meanwhile is next" in line.said.text() and at_first.place.station == 80, "one goes on"
+    runs[0].ended(True)
+    assert runs[0].loaded and len(runs) == 2 and line.said.text() == "road 0, 10–18 m is being made again."
+    runs[1].ended(True)
+    assert len(runs) == 2 and not line.isVisible()
+
+
+def test_cancel_ends_the_run_and_those_that_wait_and_what_failed_says_why(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click(), at_first.run_button.click()
+    at_first.remaking.findChild(QPushButton).click()
+    assert runs[0].task.canceled
+    runs[0].ended(False)
+    assert len(runs) == 1 and not at_first.remaking.isVisible() and at_first.iface.messageBar().currentItem() is None
+    at_first.run_button.click()
+    assert "road 0, 10–18 m" in at_first.remaking.said.text(), "it is still to be made"
+    runs[1].ended(False)
+    assert "The disk is full" in at_first.iface.messageBar().currentItem().text() and not runs[1].loaded
+
+
+def test_a_run_without_its_point_clouds_says_that_they_are_not_there(at_first):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    clock = QElapsedTimer()
+    clock.start()
+    while at_first.remaking.run is not None and clock.elapsed() < 60_000:
+        QCoreApplication.processEvents()
+    assert "The map was not made again" in at_first.iface.messageBar().currentItem().text()
+    assert "a.laz" in at_first.iface.messageBar().currentItem().text() and not at_first.remaking.isVisible()
+
+
+def test_on_wish_every_correction_is_made_at_once(at_first, runs):
+    at_first.at_once.setChecked(True)
+    try:
+        at_first.accept_button.click()
+        assert len(runs) == 1
+        runs[0].ended(True)
+        at_first.undo_button.click()
+        assert len(runs) == 2, "a map without the correction"
+    finally:
+        at_first.at_once.setChecked(False)
+
+
+def test_a_run_of_a_project_that_was_closed_brings_nothing_into_the_next(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    QgsProject.instance().clear()
+    runs[0].ended(True)
+    assert not runs[0].loaded
+
+
+def test_what_is_corrected_during_a_run_stays_to_be_made_after_it(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    changed = lambda: at_first.layer.customProperty("lanewright/changes")[-1].split()[0]  # noqa: E731
+    before = changed()
+    at_first.list.setCurrentRow(0)
+    at_first.delete_button.click()
+    during = changed()
+    runs[0].ended(True)
+    assert before < during < changed() and len(at_first.layer.customProperty("lanewright/changes")) == 1, "later than the run, which does not have it"
+
+
+def test_what_is_being_drawn_stays_when_the_map_comes_that_was_made_meanwhile(at_first):
+    at_first.begin_draw("edge")
+    at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
+    shown, again = [], []
+    at_first.shown.connect(shown.append), at_first.made_again.connect(again.append)
+    newer = added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (10 0 100, 18 0 100)", dict(
+        road=0, station_m=10.0, length_m=8.0, side="left", status="bridged")), run=run_at(12))
+    at_first._follow()
+    assert again[0].layers == (newer,) and not shown, "map and section stay where one is"
+    at_first.tool.add(QgsPointXY(EAST + 30, NORTH + 4))
+    at_first.tool.finish()
+    assert [length for *_, length in corrections()] == [pytest.approx(10.0)]
+
+
+def test_one_key_takes_up_the_vertex_tool_on_the_corrections_and_once_more_keeps_what_was_dragged(at_first):
+    iface, chosen, triggered = at_first.iface, [], []
+    iface.setActiveLayer = chosen.append
+    for name in ("actionVertexToolActiveLayer", "actionPan"):
+        setattr(iface, name, lambda action=QAction(name, at_first, triggered=lambda checked, name=name: triggered.append(name)): action)
+    key = {action.shortcut().toString(): action for action in at_first.actions()}["V"]
+    assert not at_first.vertex_button.isEnabled()
+    at_first.accept_button.click()
+    key.trigger()
+    layer = at_first.layer
+    assert chosen == [layer] and layer.isEditable() and triggered == ["actionVertexToolActiveLayer"] and "Ctrl+Z" in at_first.hint.text()
+    row = next(layer.getFeatures())
+    layer.beginEditCommand("drag"), layer.moveVertex(EAST + 19, NORTH + 1, row.id(), 1), layer.endEditCommand()
+    layer.beginEditCommand("drag"), layer.moveVertex(EAST + 30, NORTH + 1, row.id(), 1), layer.endEditCommand()
+    layer.undoStack().undo()
+    key.trigger()
+    assert len(layer.customProperty("lanewright/changes")) == 2, "the steps from there are stale"
+    assert not layer.isEditable() and triggered[-1] == "actionPan" and not at_first.hint.isVisible()
+    assert [length for *_, length in corrections()] == [pytest.approx(np.hypot(9, 1))]
+
+
+def test_take_back_while_vertices_are_dragged_takes_the_last_one(at_first):
+    at_first.accept_button.click()
+    at_first.layer.startEditing()
+    at_first.accept_button.click()
+    at_first.undo_button.click()
+    at_first.layer.commitChanges()
+    assert [(action, target) for action, target, *_ in corrections()] == [("accept", "edge")]
+
+
 def photos(folder, *rows):
     """A layer of the places of photos; rows of (name, m east and north, direction or None)."""
     layer = QgsVectorLayer("Point?crs=EPSG:32650&field=photo:string&field=direction:double", "Photos", "memory")
@@ -502,7 +656,7 @@ def test_what_no_correction_could_be_about_is_done_once_it_was_seen_and_asks_not
 
 def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_long_they_are(at_first, tmp_path, monkeypatch):
     page, opened = tmp_path / "review.html", []
-    at_first._file = lambda *names: str(page)
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.ask_for_file", lambda *names: str(page))
     monkeypatch.setattr("lanewright.desktop.review.doubt_dock.open_file", lambda iface, path: opened.append(path))
     at_first.accept_button.click()
     at_first.delete_button.click()

@@ -313,9 +313,31 @@ def printed(layout):
 
 @pytest.mark.parametrize("height, scale, told", [(0.12, "1:250", True), (0.12, "1:1000", False), (0.0, "1:250", False)])
 def test_the_sheet_explains_the_figures_that_stand_on_it_alone(project, height, scale, told):
-    rows = [("LINESTRING Z (0 0 100, 100 0 100)", dict(road=0, side="left", station_m=0.0, end_m=100.0, height_m=height))]
-    said = printed(made(project, added(project, "ROAD_EDGES", ROAD_EDGES, *rows), scale=scale)[0])
+    rows = [("LINESTRING Z (0 0 100, 100 0 100)", dict(road=0, side="left", station_m=0.0, end_m=100.0, length_m=100.0, height_m=height,
+                                                         edge="curb"))]
+    layer = added(project, "ROAD_EDGES", ROAD_EDGES, *rows)
+    apply_style(layer, STYLES / "road_edges.qml", ROAD_EDGES, "ROAD_EDGES")
+    said = printed(made(project, layer, scale=scale)[0])
     assert ("Height of the curb" in said) == told and "Axis with stations" in said and "Radius" not in said
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_figures_that_the_user_has_switched_off_are_not_explained(project, told):
+    layer = added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 60 0 100)", dict(
+        road=0, lane=1, direction=1, status="measured", station_m=0.0, end_m=60.0, length_m=60.0, radius_m=85.0)))
+    apply_style(layer, STYLES / "driving_lines.qml", DRIVING_LINES, "DRIVING_LINES")
+    layer.setLabelsEnabled(told)
+    settings = SheetSettings(title="A street", profile=False, section_interval=0.0, scale="1:1000")
+    assert ("Radius" in printed(sheet_layout(project, {"DRIVING_LINES": layer}, settings)[0])) == told
+
+
+def test_the_rest_of_an_arm_lies_at_the_side_of_its_sheet_which_shows_the_junction():
+    main = [road_line(0, 0, np.c_[np.arange(201.0), np.full(201, offset), np.zeros(201)], 0.0, 200.0) for offset in (-3.0, 3.0)]
+    arm = [road_line(1, 0, np.c_[np.full(60, 100.0 + offset), np.arange(8.0, 68.0), np.zeros(60)], 0.0, 59.0) for offset in (-3.0, 3.0)]
+    sheets = sheets_along(axes_of(main + arm), 120.0, 69.0)
+    rest = next(sheet for sheet in sheets if abs(sheet.heading - math.pi / 2) < 0.1)
+    assert rest.outline().buffer(1.0).covers(shapely.box(90, 0, 110, 67)), "from the road that it leaves to its end"
+    assert all(sheet.outline().area == pytest.approx(120 * 69) for sheet in sheets)
 
 
 def test_numbers_on_a_german_sheet_have_a_comma(project):

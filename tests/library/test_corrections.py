@@ -2,18 +2,11 @@
 
 import fiona
 import pytest
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.library import Progress, run
 
 SCHEMA = {"geometry": "LineString", "properties": {"action": "str", "target": "str", "note": "str"}}
-
-
-class Said(Progress):
-    def __init__(self):
-        self.warnings = []
-
-    def warn(self, text):
-        self.warnings.append(text)
 
 
 def mapped(street, folder, name, progress=Progress(), **more):
@@ -40,12 +33,12 @@ def test_an_edge_is_deleted_another_kept_and_what_matches_nothing_is_listed(stre
     edges, crs = rows(before["ROAD_EDGES"])
     gone = max((edge for edge in edges if edge[1]["kind"] == "main"), key=lambda edge: edge[1]["length_m"])
     far = [(x, y + 40) for x, y, _ in gone[0]]
-    said = Said()
-    after = mapped(street, tmp_path, "after", said, CORRECTIONS=write(
+    heard = Heard()
+    after = mapped(street, tmp_path, "after", heard, CORRECTIONS=write(
         tmp_path / "corrections.gpkg", crs, (gone[0], "delete", "edge", "a wall"), (far, "delete", "edge", "no road here")))
     assert after["EDGE_LENGTH"] == pytest.approx(before["EDGE_LENGTH"] - gone[1]["length_m"], abs=0.01)
     assert (after["CORRECTIONS_MADE"], after["CORRECTIONS_UNMATCHED"]) == (1, 1)
-    assert any("no road here" in text for text in said.warnings)
+    assert any("no road here" in text for text in heard.warned)
     report = (tmp_path / "after.html").read_text(encoding="utf-8")
     assert "that match nothing in this run and were left out: 1." in report and "a wall" in report
     passes, _ = rows(before["PASSES"])

@@ -4,16 +4,9 @@ import fiona
 import numpy as np
 import pytest
 import shapely
-from lanewright.library import Progress, run
+from heard import Heard
+from lanewright.library import run
 from shapely.geometry import shape
-
-
-class Said(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
 
 
 @pytest.fixture(scope="module")
@@ -43,10 +36,10 @@ def test_the_estimate_lies_on_the_drive_and_says_how_sure_it_is(survey, tmp_path
 def test_a_road_map_without_a_trajectory_is_that_with_it_and_says_so(survey, tmp_path):
     given = run("roadmap", POINT_CLOUDS=[survey / "s.laz"], TRAJECTORY=survey / "drive.gpkg", ROAD_EDGES=tmp_path / "edges.gpkg",
                 MARKINGS=tmp_path / "markings.gpkg", BOUNDARY_METHOD="profiles")
-    said = Said()
-    left_out = run("roadmap", progress=said, POINT_CLOUDS=[survey / "s.laz"], ROAD_EDGES=tmp_path / "edges_2.gpkg",
+    heard = Heard()
+    left_out = run("roadmap", progress=heard, POINT_CLOUDS=[survey / "s.laz"], ROAD_EDGES=tmp_path / "edges_2.gpkg",
                    MARKINGS=tmp_path / "markings_2.gpkg", REPORT=tmp_path / "report.html", BOUNDARY_METHOD="profiles")
-    assert any("estimated from the rays" in line for line in said.lines)
+    assert heard.says("estimated from the rays")
     assert "Trajectory estimated from the rays" in (tmp_path / "report.html").read_text(encoding="utf-8")
     for name in ("ROAD_EDGES", "MARKINGS"):
         maps = []

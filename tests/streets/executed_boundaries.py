@@ -5,21 +5,6 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 
 
-class Heard(Progress):
-    """Keeps what was said."""
-
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
-
-    warn = info
-
-    def says(self, text):
-        return any(text in line for line in self.lines)
-
-
 def boundaries(executor, method="both", progress=Progress(), **ground):
     """What is found on a street with an opening and a parked car; `ground` goes to `street`. The executor is closed."""
     survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)], **ground), start=40.0))

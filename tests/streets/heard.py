@@ -14,3 +14,7 @@ class Heard(Progress):
 
     def warn(self, text):
         self.warned.append(text)
+
+    def says(self, text):
+        """Whether a line that was said or warned of holds a text."""
+        return any(text in line for line in self.said + self.warned)

@@ -23,25 +23,48 @@ def drive(length=90.0, radius=np.inf, east=EAST):
 
 def strip(s0, s1, d0, d1):
     """Paint from station s0 to s1 and offset d0 to d1."""
-    return lambda s, d: (s >= s0) & (s < s1) & (d >= d0) & (d < d1)
+    return between(s0, s1, lambda s, d: (s >= s0) & (s < s1) & (d >= d0) & (d < d1))
 
 
 def disc(s0, d0, diameter):
-    return lambda s, d: np.hypot(s - s0, d - d0) < diameter / 2
+    return between(s0 - diameter / 2, s0 + diameter / 2, lambda s, d: np.hypot(s - s0, d - d0) < diameter / 2)
 
 
-def strewn(length, left, right, density, seed=1):
-    """Stations, in order, and offsets strewn evenly over a carriageway from offset `right` to `left`."""
+def oblique_bar(way, beside, length, width, s0=30.0):
+    """A bar `length` long `way` degrees left of the road's direction, whose middle line passes station `s0` of the axis `beside` m to its left."""
+    c, n = np.cos(np.radians(way)), np.sin(np.radians(way))
+    reach = length + width + abs(beside)
+    return between(s0 - reach, s0 + reach, lambda s, d: (np.abs((s - s0) * c + d * n) < length / 2)
+                   & (np.abs(d * c - (s - s0) * n - beside) < width / 2))
+
+
+def between(first, last, mark):
+    """A mark, of which is known that it lies between two stations: no others are looked at."""
+    mark.stations = first, last
+    return mark
+
+
+def painted_by(marks, s, d):
+    """(N,) whether places, sorted by station, are painted."""
+    painted = np.zeros(len(s), bool)
+    for mark in marks:
+        rows = slice(*np.searchsorted(s, getattr(mark, "stations", (-np.inf, np.inf))))
+        painted[rows] |= mark(s[rows], d[rows])
+    return painted
+
+
+def strewn(length, left, right, density, seed=1, start=0.0):
+    """Stations from `start` on, in order, and offsets strewn evenly over a carriageway from offset `right` to `left`."""
     rng = np.random.default_rng(seed)
     count = int(length * (left - right) * density)
     ahead = np.cumsum(rng.standard_exponential(count + 1))  # as far apart as evenly strewn places in order are: nothing is sorted
-    return ahead[:-1] / ahead[-1] * length, rng.uniform(right, left, count)
+    return start + ahead[:-1] / ahead[-1] * length, rng.uniform(right, left, count)
 
 
 def street(frame, marks=(), length=60.0, left=4.0, right=-4.0, density=DENSITY, noise=0.08, level=None, seed=1):
     """(N,) ROAD_POINT records of a carriageway; `level(s, d)` is asphalt's brightness as a factor."""
     s, d = strewn(length, left, right, density, seed)
-    painted = np.any([mark(s, d) for mark in marks], axis=0) if len(marks) else np.zeros(len(s), bool)
+    painted = painted_by(marks, s, d)
     rng = np.random.default_rng(seed + 1)
     brightness = np.where(painted, PAINT, ASPHALT * (1.0 if level is None else level(s, d)))
     return records_at(frame, s, d, brightness * rng.normal(1.0, noise, len(s)), max(left, -right))
@@ -49,8 +72,10 @@ def street(frame, marks=(), length=60.0, left=4.0, right=-4.0, density=DENSITY, 
 
 def paint(frame, marks, density=1500, length=80.0, reach=6.0, seed=1):
     """Records of the painted points alone."""
-    s, d = strewn(length, reach, -reach, density, seed)
-    painted = np.any([mark(s, d) for mark in marks], axis=0)
+    stations = np.array([getattr(mark, "stations", (0.0, length)) for mark in marks])
+    first, last = max(stations.min(), 0.0), min(stations.max(), length)
+    s, d = strewn(last - first, reach, -reach, density, seed, first)
+    painted = painted_by(marks, s, d)
     return records_at(frame, s[painted], d[painted], np.full(painted.sum(), PAINT), reach)
 
 

@@ -194,11 +194,20 @@ def _in_runs(cells, longest_gap, shortest_run):
 
 
 def _linked(cells, along, across):
-    """Connected components of cells no farther apart than `along` and `across` cells."""
+    """Connected components of different cells no farther apart than `along` and `across` cells, numbered in the order of the cells."""
     if not len(cells):
         return np.empty(0, np.int64)
-    pairs = cKDTree(cells / [along, across]).query_pairs(1.0, p=np.inf, output_type="ndarray")
-    return linked_groups(pairs[:, 0], pairs[:, 1], len(cells)).astype(np.int64)
+    order = np.lexsort(cells.T)
+    (column, row), reach = (cells[order] - cells.min(axis=0)).T, int(along)
+    key = row * (int(column.max()) + 2 * reach + 1) + column
+    pairs = []
+    # of a row of cells the first and the last within reach are enough: those between them are linked with one of the two
+    for step in range(int(across) + 1):
+        near = key + step * (int(column.max()) + 2 * reach + 1)
+        first, last = np.searchsorted(key, near - reach), np.searchsorted(key, near + reach, side="right") - 1
+        some = np.flatnonzero(first <= last)
+        pairs += [(order[some], order[other[some]]) for other in (first, last)]
+    return linked_groups(*np.concatenate(pairs, axis=1), len(cells)).astype(np.int64)
 
 
 def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:

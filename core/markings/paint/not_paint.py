@@ -80,16 +80,17 @@ def beside_pieces(values: np.ndarray, labels: np.ndarray, bright: np.ndarray, re
     far, near = (cv2.dilate(labels.astype(np.float32), np.ones((2 * cells + 1, 2 * cells + 1), np.uint8)) for cells in reach)
     beside = np.where(known & (near == 0), far, 0).astype(np.int32)
     inside, count = np.where(bright, labels, 0), int(labels.max()) + 1
-    return np.array([*(_of_pieces(level, beside, count, share) for share in RIMS.sides), _of_pieces(level, inside, count, 0.5)])[:, 1:]
+    return np.array([*_of_pieces(level, beside, count, RIMS.sides), *_of_pieces(level, inside, count, (0.5,))])[:, 1:]
 
 
-def _of_pieces(values, labels, count, share):
-    """(count,) of each label the value that a share of its cells do not exceed; NaN where it has no cell."""
+def _of_pieces(values, labels, count, shares):
+    """[(count,) of each label the value that a share of its cells do not exceed; NaN where it has no cell] of some shares."""
     cells = np.flatnonzero(labels)
     of, values = labels.ravel()[cells], values.ravel()[cells]
     number = np.bincount(of, minlength=count)
-    place = np.cumsum(number) - number + (share * np.maximum(number - 1, 0)).astype(np.int64)
-    return np.where(number > 0, np.append(values[np.lexsort((values, of))], np.nan)[np.minimum(place, len(cells))], np.nan)
+    ordered, first = np.append(values[np.lexsort((values, of))], np.nan), np.cumsum(number) - number
+    places = (first + (share * np.maximum(number - 1, 0)).astype(np.int64) for share in shares)
+    return [np.where(number > 0, ordered[np.minimum(place, len(cells))], np.nan) for place in places]
 
 
 def _unseen_gaps(mask, seen, limit, axis):

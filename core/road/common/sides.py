@@ -166,7 +166,7 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
         return []
     measured = measured[np.argsort(measured[:, 0], kind="stable")]
     start, end = measured[:-1, 0], measured[1:, 0]
-    wide = (end - start <= CURBS.max_hidden_gap) & (end - start > CURBS.min_hidden_gap)
+    wide = (end - start <= CURBS.max_line_gap) & (end - start > CURBS.min_hidden_gap)
     # counted from the gap's own ends: where station 0 lies does not matter
     parts = np.where(wide, np.rint((end - start) / CURBS.hidden_point_spacing), 0).astype(np.int64)
     gap, number = expand_ranges(np.zeros(len(parts), np.int64), parts)

@@ -27,7 +27,7 @@ from .road_edges import EdgePiece, RoadEdges, edge_sigma, joined_pieces
 class EdgeSettings(Limited):
     """How curb points become lines.
 
-    max_gap : m that are bridged where something hides the curb; up to twice as long where both parts lie in one line. Longer gaps interrupt the edge
+    max_gap : m that are bridged where something hides the curb; up to three times as long where both parts lie in one line. Longer ones stay open
     fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
 
@@ -103,8 +103,7 @@ def _pieces(rows, max_gap):
         & (covered >= EDGE.hidden_curb_share * (gap - EDGE.gap_end_allowance)) & (across <= EDGE.max_edge_jump + 0.1 * gap)
     # the longer a gap is, the better both parts must show the direction of one line
     s = np.ascontiguousarray(points["s"])
-    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap))
-             if line_across(points, s, k)[0] > IN_LINE_TURN * EDGE.in_line_gap_factor * max_gap / gap[k]]] = False
+    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap)) if line_across(points, s, k)[0] * gap[k] > EDGE.max_edge_jump]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     inferred, low = points["status"] == "bridged", is_lowered(points, s)
     # what the ground shows in a gap may be a curb of full height as well; behind a lowered one the ramp to the sidewalk counts with its step

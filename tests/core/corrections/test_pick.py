@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.corrections.pick import pick_line, snap_line
+from lanewright.core.corrections.pick import face_at, pick_line, snap_line
 
 ORIGIN, AZIMUTH, FACE, PAINT, RADIUS = np.array([500_000.0, 5_000_000.0]), 30.0, 3.0, -1.0, 60.0
 
@@ -93,3 +93,38 @@ def test_a_line_drawn_by_hand_is_laid_onto_the_face():
 
 def test_a_line_drawn_where_nothing_is_stays_as_it_is():
     assert snap_line(street(), on_map(np.array([-10.0, 8.0]), np.array([1.2, 1.2])), "edge") is None
+
+
+@pytest.mark.parametrize("shape", [dict(), dict(height=0.03), dict(height=0.2), dict(lean=0.15), dict(density=100), dict(bend=True)])
+@pytest.mark.parametrize("turned", [0, 25])
+def test_a_click_in_a_section_finds_the_bottom_and_the_top_of_the_face_there(shape, turned):
+    """Also where the section lies askew to the curb."""
+    bend, height, lean = shape.get("bend", False), shape.get("height", 0.12), shape.get("lean", 0.0)
+    face = face_at(street(**shape), *on_map(2.0, FACE + 0.2, bend), AZIMUTH + turned)
+    s, d = on_road(face.places[:, :2], bend)
+    assert d == pytest.approx([FACE, FACE + lean], abs=0.03)
+    assert face.places[:, 2] == pytest.approx(0.03 * s - 0.02 * d + [0.0, height], abs=0.012)
+    assert face.height == pytest.approx(height, abs=0.008) and abs(face.height - height) < 3 * face.sigma_height < 0.04
+    assert face.sigma_across < 0.03 and face.points > 100
+    assert face.direction == pytest.approx(AZIMUTH - (np.degrees(2.0 / RADIUS) if bend else 0.0), abs=3.0)
+
+
+def test_a_wheel_beside_the_click_moves_neither_bottom_nor_top():
+    points = street()
+    s, d = on_road(points[:, :2])
+    points[(np.abs(s - 1.0) < 0.3) & (np.abs(d - 2.85) < 0.15), 2] += 0.3
+    face, free = face_at(points, *on_map(2.0, 3.1), AZIMUTH), face_at(street(), *on_map(2.0, 3.1), AZIMUTH)
+    np.testing.assert_allclose(face.places, free.places, atol=0.01)
+
+
+@pytest.mark.parametrize("points", [street(height=0.0), street(hidden=(-15, 1.7))[:10], np.empty((0, 4))])
+def test_a_click_in_a_section_without_a_step_finds_no_face(points):
+    assert face_at(points, *on_map(2.0, FACE), AZIMUTH) is None
+
+
+def test_a_stone_in_a_section_is_no_curb():
+    points = street(height=0.0)
+    s, d = on_road(points[:, :2])
+    points[(np.abs(s - 2.0) < 0.15) & (np.abs(d - FACE) < 0.15), 2] += 0.1
+    assert face_at(points, *on_map(2.0, FACE - 0.1), AZIMUTH) is None
+    assert face_at(street(), *on_map(2.0, FACE - 0.5), AZIMUTH) is None, "the curb is half a metre from the click"

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.progress import Progress
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.asphalt_model import UNKNOWN_DISTANCE, VehicleDistances
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
@@ -220,20 +220,10 @@ def test_an_unknown_scale_is_refused():
         IntensitySettings(scale="decibel")
 
 
-class Listener(Progress):
-    """Keeps what a user is warned of."""
-
-    def __init__(self):
-        self.warnings = []
-
-    def warn(self, text):
-        self.warnings.append(text)
-
-
 def warned(records):
-    listener = Listener()
-    _, report = correct_intensity(road_points(records), straight_drive(), progress=listener)
-    return listener.warnings, report
+    heard = Heard()
+    _, report = correct_intensity(road_points(records), straight_drive(), progress=heard)
+    return heard.warned, report
 
 
 @pytest.mark.parametrize("scanners", [1, 2])

@@ -35,28 +35,28 @@ def test_distances_are_those_among_all_points(scene):
     units = SCENES[scene]
     expected = among_all(units, 12)
     neighbours = Neighbours(units, 12)
-    distances, nearest = neighbours.of(np.arange(len(units)))
+    everyone = np.arange(len(units))
+    distances, nearest = neighbours.distances(everyone), neighbours.nearest(everyone)
     np.testing.assert_allclose(distances, expected.mean(axis=1), rtol=1e-6)
     if len(np.unique(units, axis=0)) == len(units):
         reached = np.sqrt(((units[nearest].astype(float) - units[:, None]) ** 2).sum(axis=2)) * 1e-4
         np.testing.assert_allclose(np.sort(reached, axis=1), expected, rtol=1e-6)
-    np.testing.assert_array_equal(neighbours.distances(), distances)
 
 
 def test_asking_for_some_points_tells_of_those_and_in_their_order():
     units = paint(500, 1.0)
-    some = np.array([77, 3, 410])
-    whole, asked = Neighbours(units, 5).of(np.arange(500)), Neighbours(units, 5).of(some)
-    for all_of_them, these in zip(whole, asked):
-        np.testing.assert_array_equal(these, all_of_them[some])
+    some = np.array([[77, 3], [410, 77]])
+    whole, asked = Neighbours(units, 5), Neighbours(units, 5)
+    np.testing.assert_array_equal(asked.distances(some), whole.distances(np.arange(500))[some])
+    np.testing.assert_array_equal(asked.nearest(some.ravel()), whole.nearest(np.arange(500))[some.ravel()])
+    np.testing.assert_array_equal(asked.distances(np.arange(500)), whole.distances(np.arange(500)))
 
 
 def test_a_point_by_itself_has_nobody():
-    lonely = paint(1, 1.0)
-    distances, nearest = Neighbours(lonely, 20).of(np.arange(1))
-    assert np.isinf(distances).all() and nearest.shape == (1, 0)
+    lonely = Neighbours(paint(1, 1.0), 20)
+    assert np.isinf(lonely.distances(np.arange(1))).all() and lonely.nearest(np.arange(1)).shape == (1, 0)
 
 
 def test_no_points_have_no_distances():
-    assert len(Neighbours(np.empty((0, 3), np.int32), 20).distances()) == 0
-    assert len(Neighbours(paint(30, 1.0), 5).of(np.empty(0, int))[0]) == 0
+    assert len(Neighbours(np.empty((0, 3), np.int32), 20).distances(np.empty(0, int))) == 0
+    assert len(Neighbours(paint(30, 1.0), 5).nearest(np.empty(0, int))) == 0

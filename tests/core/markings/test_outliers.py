@@ -82,7 +82,7 @@ EXPORTS = {
     "a grid of 1 cm": lambda records: rounded(records, 0.01),
     "a grid of 10 cm": lambda records: rounded(records, 0.1),
     "every point 25 times": lambda records: repeated(records, 25),
-    "every second point 22 times on a grid of 1 cm": lambda records: every_second_repeated(rounded(records, 0.01), 22),
+    "every second point 22 times on a grid of 1 cm": lambda records: rounded(every_second_repeated(records, 22), 0.01),
 }
 
 

@@ -6,7 +6,7 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.road.detect_boundaries import BoundarySettings
 from lanewright.core.road.scanlines.detect import SurveyScanlines
 from lanewright.core.survey.open_survey import open_survey
@@ -17,16 +17,6 @@ pytestmark = pytest.mark.slow
 
 ROTATION = 100.0
 TOLERANCE = 0.10
-
-
-class Log(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
-
-    warn = info
 
 
 @pytest.fixture(scope="module")
@@ -52,9 +42,9 @@ def one_line_in(kept):
 
 def drawn(survey, street, method):
     """The edges, and what was said meanwhile."""
-    log = Log()
-    edges = drawn_boundaries(survey, BoundarySettings(method=method), progress=log)
-    return edges.geometries, "\n".join(log.lines)
+    heard = Heard()
+    edges = drawn_boundaries(survey, BoundarySettings(method=method), progress=heard)
+    return edges.geometries, "\n".join(heard.said + heard.warned)
 
 
 def right(edges, survey, street):

@@ -4,7 +4,7 @@ import os
 import shutil
 
 import pytest
-from executed_boundaries import Heard
+from heard import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import keep, phase
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def sample(made_survey):
-    return made_survey(length=40.0, pulse_rate=40_000.0)
+    return made_survey(length=24.0, pulse_rate=40_000.0)
 
 
 def boundaries(sample, folder, curbs=CurbSettings(), progress=None, cloud=None, workers=0, settings=SurveySettings()):

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from curbed_streets import street, survey_of
 from executed_boundaries import boundaries, numbers_of
+from heard import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import choice, processes
@@ -146,19 +147,11 @@ def test_a_full_or_missing_folder_for_temporary_files_is_named(python):
         boundaries(executor, "profiles")
 
 
-class Heard(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
-
-
 def test_threads_do_small_surveys_and_worker_processes_those_that_ask_for_them(python):
     assert isinstance(executor_for(1_000_000), Threads)
     heard = Heard()
     executor = executor_for(1_000_000, ExecutionSettings(workers=2), heard)
-    assert isinstance(executor, WorkerProcesses) and executor.workers == 2 and "2 worker process" in heard.lines[0]
+    assert isinstance(executor, WorkerProcesses) and executor.workers == 2 and "2 worker process" in heard.said[0]
     executor.close()
 
 
@@ -183,7 +176,7 @@ def test_where_no_interpreter_can_do_the_work_one_line_says_so_and_threads_do_it
     interpreter.find_interpreter.cache_clear()
     heard = Heard()
     assert isinstance(executor_for(1_000_000, ExecutionSettings(workers=2), heard), Threads)
-    assert len(heard.lines) == 1 and "No Python interpreter" in heard.lines[0]
+    assert len(heard.said) == 1 and "No Python interpreter" in heard.said[0]
     interpreter.find_interpreter.cache_clear()
 
 

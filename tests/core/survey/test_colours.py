@@ -4,21 +4,13 @@ import laspy
 import numpy as np
 import pytest
 from drives import ahead, chain, contents, drive, surveyed_points, write_cloud
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.progress import Progress
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.products.inspection import inspect_survey
 
 CRS = "EPSG:32632"
 BRIGHTEST = 255 * 256
-
-
-class Log(Progress):
-    def __init__(self):
-        self.said = []
-
-    def warn(self, text):
-        self.said.append(text)
 
 
 def coloured_street(path, point_format=7, intensity=0, colour=(255, 255, 255), paint=True):
@@ -47,27 +39,27 @@ def test_the_brightness_of_a_colour_is_that_of_the_standard(tmp_path, point_form
 
 def test_by_default_colours_are_not_looked_at(tmp_path):
     trajectory, cloud = coloured_street(tmp_path / "street.laz", intensity=700)
-    log = Log()
-    survey = open_survey([cloud], trajectory, progress=log)
+    heard = Heard()
+    survey = open_survey([cloud], trajectory, progress=heard)
     assert set(contents(survey)["intensity"].tolist()) == {700}
     assert not survey.has_intensity
 
 
 def test_where_all_are_equally_bright_the_colours_are_named_as_a_way_on(tmp_path):
     trajectory, cloud = coloured_street(tmp_path / "street.laz")
-    log = Log()
-    open_survey([cloud], trajectory, progress=log)
-    assert any("set Intensity from (INTENSITY_FROM) to rgb" in text for text in log.said)
+    heard = Heard()
+    open_survey([cloud], trajectory, progress=heard)
+    assert any("set Intensity from (INTENSITY_FROM) to rgb" in text for text in heard.warned)
     assert any("INTENSITY_FROM" in note for note in inspect_survey([cloud]).notes)
 
 
 def test_colours_that_are_all_the_same_are_no_way_on(tmp_path):
     trajectory, cloud = coloured_street(tmp_path / "grey.laz", paint=False)
-    log = Log()
-    assert not open_survey([cloud], trajectory, progress=log).has_intensity
-    assert not any("INTENSITY_FROM" in text for text in log.said)
-    assert not open_survey([cloud], trajectory, SurveySettings(intensity_from="rgb"), log).has_intensity
-    assert any("colours of the points are all the same" in text for text in log.said)
+    heard = Heard()
+    assert not open_survey([cloud], trajectory, progress=heard).has_intensity
+    assert not any("INTENSITY_FROM" in text for text in heard.warned)
+    assert not open_survey([cloud], trajectory, SurveySettings(intensity_from="rgb"), heard).has_intensity
+    assert any("colours of the points are all the same" in text for text in heard.warned)
 
 
 def test_a_cloud_without_colours_is_refused_by_name(tmp_path):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
-from executed_boundaries import Heard
+from heard import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import processes

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import shapely
 from clustered_streets import RADIUS, UP, ClusteredStreet, told
+from heard import Heard
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import MARKINGS, Features
-from lanewright.core.common.progress import Progress
 from lanewright.core.curves.base import Arc
 from lanewright.core.curves.bspline import Spline
 from lanewright.core.curves.clothoid import Clothoid
@@ -293,15 +293,10 @@ def test_a_chosen_curve_is_used_for_every_line(curve):
 
 
 def test_where_the_chosen_curve_cannot_be_the_user_is_told():
-    class Listener(Progress):
-        warnings = []
-
-        def warn(self, text):
-            self.warnings.append(text)
-
-    lines = ClusteredStreet().paint(0, 50, 0.0, kind="centre").lines(MarkingLineSettings(curve="ellipse"), Listener())
+    heard = Heard()
+    lines = ClusteredStreet().paint(0, 50, 0.0, kind="centre").lines(MarkingLineSettings(curve="ellipse"), heard)
     assert told(lines, "curve") == [("circle",)]
-    assert Listener.warnings == ["1 of 1 lines cannot take the curve “ellipse”; the automatic curve was used for them."]
+    assert heard.warned == ["1 of 1 lines cannot take the curve “ellipse”; the automatic curve was used for them."]
 
 
 def test_lines_that_are_written_as_a_layer_and_read_again_lie_at_the_same_stations_and_offsets():

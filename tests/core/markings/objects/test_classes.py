@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of, markings_of
-from painted_streets import disc, paint, road_points, strip
+from painted_streets import between, disc, oblique_bar, paint, painted_by, road_points, strip
 
 
 def test_a_zebra_crossing_keeps_its_stripes():
@@ -17,24 +17,14 @@ def test_a_zebra_crossing_keeps_its_stripes():
 
 @pytest.mark.parametrize("oblique", [-30, -20, 12, 20, 30])
 def test_a_zebra_crossing_oblique_to_the_road_keeps_its_stripes(oblique):
-    c, n = np.cos(np.radians(oblique)), np.sin(np.radians(oblique))
-
-    def stripe(k):
-        return lambda s, d: (np.abs((s - 30) * c + d * n) < 1.5) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
-
-    markings = markings_of([stripe(k) for k in (-2, -1, 0, 1, 2)], density=2500)
+    markings = markings_of([oblique_bar(oblique, k, 3.0, 0.5) for k in (-2, -1, 0, 1, 2)], density=2500)
     assert classes(markings) == ["zebra"] * 5
     assert markings.column("area_m2") == pytest.approx([1.5] * 5, rel=0.15)
 
 
 @pytest.mark.parametrize("way", [90, 70, 55, -60], ids=lambda way: f"{way} degrees")
 def test_the_zebra_crossing_of_a_side_street_points_along_that_street(way):
-    c, n = np.cos(np.radians(way)), np.sin(np.radians(way))
-
-    def stripe(k):
-        return lambda s, d: (np.abs((s - 30) * c + d * n) < 1.6) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
-
-    markings = markings_of([stripe(k) for k in (-2.4, -1.2, 0, 1.2, 2.4)], density=2500)
+    markings = markings_of([oblique_bar(way, k, 3.2, 0.5) for k in (-2.4, -1.2, 0, 1.2, 2.4)], density=2500)
     assert classes(markings) == ["zebra"] * 5
     assert markings.column("area_m2") == pytest.approx([1.6] * 5, rel=0.15)
 
@@ -90,13 +80,13 @@ def arrow(s0, d0, way=1):
     def painted(s, d):
         u, across = (s - s0) * way, np.abs(d - d0)
         return (u >= 0) & (u < 3.2) & (across < 0.075) | (u >= 3.2) & (u < 5.0) & (across < 0.45 * (5.0 - u) / 1.8)
-    return painted
+    return between(s0 - 5.0, s0 + 5.0, painted)
 
 
 def letter(s0, d0):
     """An E of 2.4 m by 1 m."""
-    return lambda s, d: np.any([strip(s0, s0 + 2.4, d0, d0 + 0.2)(s, d)]
-                               + [strip(u, u + 0.3, d0, d0 + 1.0)(s, d) for u in (s0, s0 + 1.05, s0 + 2.1)], axis=0)
+    bars = [strip(s0, s0 + 2.4, d0, d0 + 0.2), *(strip(u, u + 0.3, d0, d0 + 1.0) for u in (s0, s0 + 1.05, s0 + 2.1))]
+    return between(s0, s0 + 2.4, lambda s, d: painted_by(bars, s, d))
 
 
 @pytest.mark.parametrize("way", [1, -1])
@@ -108,12 +98,13 @@ def test_an_arrow_of_6_m_keeps_its_shaft():
     def painted(s, d):
         u, across = s - 30, np.abs(d - 1.5)
         return (u >= 0) & (u < 3.6) & (across < 0.10) | (u >= 3.6) & (u < 6.0) & (across < 0.55 * (6.0 - u) / 2.4)
-    assert classes(markings_of([painted], density=3000)) == ["arrow"]
+    assert classes(markings_of([between(30, 36, painted)], density=3000)) == ["arrow"]
 
 
 def slanting(s0, d0, length=1.2, width=0.3):
     """A bar at 45 degrees to the road, to the left of its place."""
-    return lambda s, d: (np.abs(s - s0 - (d - d0)) < width * np.sqrt(0.5)) & (d > d0) & (d < d0 + length * np.sqrt(0.5))
+    return between(s0 - width, s0 + length + width,
+                   lambda s, d: (np.abs(s - s0 - (d - d0)) < width * np.sqrt(0.5)) & (d > d0) & (d < d0 + length * np.sqrt(0.5)))
 
 
 def test_bars_side_by_side_are_hatching_one_alone_is_not_and_at_the_edge_it_is_the_curb_of_a_corner():
@@ -155,12 +146,8 @@ def test_a_row_of_equal_squares_across_the_road_is_a_give_way_line(count):
 
 @pytest.mark.parametrize("oblique", [20, 35, -60], ids=lambda way: f"{way} degrees")
 def test_a_give_way_line_may_lie_oblique_to_the_road(oblique):
-    c, n = np.cos(np.radians(oblique)), np.sin(np.radians(oblique))
-
-    def block(k):
-        return lambda s, d: (np.abs((s - 30) * c + d * n) < 0.25) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
-
-    assert classes(markings_of([block(k) for k in (-1.7, -0.85, 0, 0.85, 1.7)], density=2500)) == ["give_way"] * 5
+    blocks_across = [oblique_bar(oblique, k, 0.5, 0.5) for k in (-1.7, -0.85, 0, 0.85, 1.7)]
+    assert classes(markings_of(blocks_across, density=2500)) == ["give_way"] * 5
 
 
 @pytest.mark.parametrize("marks", [

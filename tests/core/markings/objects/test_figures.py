@@ -9,14 +9,14 @@ from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.figures import figure_of_cells
 from lanewright.simulator.parts.paint import straight_arrow
 from lanewright.simulator.parts.symbols import bicycle, bus_word
-from painted_streets import paint, road_points, strip
+from painted_streets import between, paint, painted_by, road_points, strip
 
 
 def drawn(polygons):
     """A mark of polygons in stations and offsets."""
     area = shapely.union_all([shapely.Polygon(polygon) for polygon in polygons])
     shapely.prepare(area)
-    return lambda s, d: shapely.contains_xy(area, np.broadcast_arrays(s, d)[0], np.broadcast_arrays(s, d)[1])
+    return between(area.bounds[0], area.bounds[2], lambda s, d: shapely.contains_xy(area, s, d))
 
 
 def mirrored(polygons, offset):
@@ -50,7 +50,8 @@ def test_figures_are_told_with_4_cm_of_noise_and_a_tenth_of_the_points_gone():
 
 
 def letters(text_bars):
-    return lambda s, d: np.any([strip(*bar)(s, d) for bar in text_bars], axis=0)
+    return between(min(bar[0] for bar in text_bars), max(bar[1] for bar in text_bars),
+                   lambda s, d: painted_by([strip(*bar) for bar in text_bars], s, d))
 
 
 def word(*names, s0=30.0, d0=0.5):
@@ -64,7 +65,7 @@ def word(*names, s0=30.0, d0=0.5):
 
 
 @pytest.mark.parametrize("mark", [word(*"HOL"), word(*"EHE"), word(*"TAP"), word("O"), drawn([straight_arrow(30.0, 1.5, 1)]),
-                                  strip(30, 31.2, 0.0, 1.4), lambda s, d: np.abs(np.hypot(s - 30, d - 1.5) - 0.5) < 0.06])
+                                  strip(30, 31.2, 0.0, 1.4), between(29.0, 31.0, lambda s, d: np.abs(np.hypot(s - 30, d - 1.5) - 0.5) < 0.06)])
 def test_other_figures_are_neither(mark):
     assert not {"bicycle", "bus"} & set(classes(markings_of([mark], density=4000)))
 
@@ -83,7 +84,7 @@ class Noting(Threads):
 
 
 def test_what_was_asked_about_a_figure_is_the_same_with_a_line_more_before_it_so_that_its_answer_serves_again():
-    figure, asked = drawn(bicycle(30.0, 1.5, 1, 1.8, 1.2)), []
+    figure, asked = between(5.0, 40.0, drawn(bicycle(30.0, 1.5, 1, 1.8, 1.2))), []   # strewn with the same points in both
     for others in ([], [strip(5.0, 8.0, 1.4, 1.6), strip(12.0, 14.0, -1.0, -0.5)]):
         executor = Noting()
         cluster_markings(road_points(paint(FRAME, [figure, *others], density=4000), FRAME), FRAME, executor=executor)

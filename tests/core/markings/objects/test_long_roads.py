@@ -11,7 +11,7 @@ from lanewright.core.markings.objects import split_merge as bars
 from lanewright.core.markings.objects.repeating import Comb, _alike
 from lanewright.core.markings.road_grid import filled_between_tracks
 
-SHORT, LONG = 4, 16
+SHORT, LONG = 2, 8
 
 
 def lines_joined_by_bars(bars_of_road):

@@ -10,12 +10,11 @@ from clustered_marks import FRAME, classes
 from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import MarkingObjects, with_kinds_of
-from painted_streets import paint, road_points, strip
+from painted_streets import oblique_bar, paint, road_points, strip
 
 
 def test_a_layer_of_markings_that_is_read_again_gives_the_same_objects_and_with_other_names_the_same_polygons():
-    oblique_crossing = [lambda s, d, k=k: (np.abs((s - 30) * 0.87 + d * 0.5) < 1.5) & (np.abs(d * 0.87 - (s - 30) * 0.5 - k) < 0.25)
-                      for k in (-1, 0, 1)]
+    oblique_crossing = [oblique_bar(30, k, 3.0, 0.5) for k in (-1, 0, 1)]
     points = road_points(paint(FRAME, [strip(5, 20, 3.0, 3.15), *oblique_crossing], density=2500), FRAME)
     objects, _ = cluster_markings(points, FRAME)
     layer = objects.to_features(FRAME)

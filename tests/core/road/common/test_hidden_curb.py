@@ -71,6 +71,12 @@ def test_the_share_of_a_gap_that_is_hidden_does_not_depend_on_where_the_stations
     assert len(places(0.0)) == 17, "half a metre each, over the whole gap"
 
 
+@pytest.mark.parametrize("ground, share", [(np.nan, 1.0), (0.0, 0.0)], ids=["nothing seen behind them", "level road behind them"])
+def test_a_curb_is_hidden_behind_the_whole_length_of_a_row_of_parked_cars(ground, share):
+    row = np.array([[2.0, OUT, 0.0], [38.0, OUT, 0.0]])
+    assert len(hidden_points(row, beside(ground)["left"], lambda s: np.zeros(len(s)))) == share * 72, "half a metre each"
+
+
 def wet(road, behind):
     """A grid of which the metre before the curb and what lies behind its foot are as given (m above the road), and nothing stands there."""
     grid = OcclusionGrid(0.25, 0, 160, 20.0)

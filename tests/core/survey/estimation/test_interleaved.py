@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import write_cloud
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.estimation.adjustment import told_apart
 from lanewright.core.survey.estimation.estimate import estimate_trajectory
 from lanewright.core.survey.open_survey import open_survey
@@ -15,14 +15,6 @@ BUTTERFLY = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0)), Mirror(45.0, -20.0, (0.0, -
 UNEQUAL = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0), pulses=40_000.0), Mirror(45.0, -20.0, (0.0, -0.32, 0.0), pulses=10_000.0, ahead=0.55))
 SPARSE = tuple(replace(mirror, pulses=10_000.0) for mirror in BUTTERFLY)
 THREE = (*SPARSE, Mirror(0.0, 10.0, (-1.0, 0.0, -0.4), pulses=10_000.0, ahead=0.1))
-
-
-class Said(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
 
 
 @pytest.fixture(scope="module")
@@ -77,9 +69,9 @@ def test_a_survey_counts_three_scanners(tmp_path):
 @pytest.mark.parametrize("order", ["one scanner after the other", "by time"])
 def test_a_survey_tells_them_apart_and_says_so(tmp_path, street, order):
     which = np.argsort(street.time, kind="stable") if order == "by time" else slice(None)
-    said = Said()
-    survey = open_survey([street.write(tmp_path / "cloud.las", which, merged=True)], street.trajectory(), progress=said)
-    assert survey.scanners == [0, 1] and told_apart(2) in said.lines
+    heard = Heard()
+    survey = open_survey([street.write(tmp_path / "cloud.las", which, merged=True)], street.trajectory(), progress=heard)
+    assert survey.scanners == [0, 1] and told_apart(2) in heard.said
     rows = np.random.default_rng(1).choice(len(street.time), 5000, replace=False)
     place = np.stack(survey.frame.to_local(*(street.place[rows] + [500_000.0, 5_400_000.0, 100.0]).T), axis=1)
     same = np.mean(survey.splitter.numbers(street.time[rows], place) == street.scanner[rows])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.progress import Progress
+from heard import Heard
 from lanewright.core.survey.lattice.scan_lattice import COARSE_TIMES, DISORDER, find_lattice
 from scanned_streets import START, TUNNEL, Cloud, driven, scanned, survey_of
 
@@ -104,15 +104,10 @@ def spinning(rate=10.0, beams=16, seconds=6.0):
 
 def test_a_spinning_scanner_with_many_beams_has_no_scan_lines():
     time, x, y, z = spinning()
-    told = []
-
-    class Log(Progress):
-        def warn(self, text):
-            told.append(text)
-
-    lattice = find_lattice(survey_of(Cloud(time, x, y, z, np.zeros(len(x)), np.zeros(len(x)))), progress=Log())
+    heard = Heard()
+    lattice = find_lattice(survey_of(Cloud(time, x, y, z, np.zeros(len(x)), np.zeros(len(x)))), progress=heard)
     assert lattice.mirror_phases == {} and list(lattice.without) == [(0, 0)]
-    assert len(told) == 1 and "no regular scan lines" in told[0] and "many beams" in told[0]
+    assert len(heard.warned) == 1 and "no regular scan lines" in heard.warned[0] and "many beams" in heard.warned[0]
 
 
 def test_times_too_coarse_for_the_order_of_points_are_no_lattice():

@@ -1,0 +1,97 @@
+"""A line that says which stretch of the map is being made again, in the background, while one goes on."""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime
+from functools import partial
+
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsPointXY, QgsProcessing, QgsProject, QgsRectangle, QgsVectorLayer
+from qgis.PyQt.QtWidgets import QProgressBar, QWidget
+
+from ...processing_provider.results.road_maps import RoadMap, brought_to, road_maps
+from ...processing_provider.texts import tr
+from ..background import BackgroundRun, loaded
+from ..widgets import button, column, row, say, wrapped
+from .corrections_layer import changes_of, note_made
+from .steps import saved, values_again
+
+MOST_NAMED = 3   # stretches that are named; of more, the first
+NEAR = 30.0      # m about a correction within which a driving line tells its station
+
+
+class Remaking(QWidget):
+    """The line, hidden while nothing is made. One run at a time: who asks meanwhile has the next one, for all that was corrected until then."""
+
+    def __init__(self, iface):
+        super().__init__(visible=False)
+        self.iface = iface
+        self.run: BackgroundRun | None = None
+        self.wanted: tuple[RoadMap, QgsVectorLayer] | None = None   # of the next run
+        self.said, self.bar = wrapped(), QProgressBar(maximum=100)
+        column(self, self.said, row(self.bar, button(tr("Cancel"), self.cancel, tr("The map stays as it is; what is done so far is kept"))), rim=0)
+
+    def ask(self, road_map: RoadMap, corrections: QgsVectorLayer) -> None:
+        """Make a map again with its corrections, now or after the run under way."""
+        self.wanted = road_map, corrections
+        if self.run is None:
+            self._begin()
+        else:
+            self.said.setText(tr("{stretch} is being made again; what was corrected meanwhile is next.", stretch=self.stretch))
+
+    def cancel(self) -> None:
+        """End the run, and those that wait."""
+        self.wanted = None
+        if self.run is not None:
+            self.run.task.cancel()
+
+    def forget(self) -> None:
+        """Cancel, and take no notice of how it ends."""
+        self.cancel()
+        self.run = None
+
+    def _begin(self):
+        (road_map, layer), self.wanted = self.wanted, None
+        road_map = next((newer for newer in road_maps(QgsProject.instance()) if newer.survey == road_map.survey), road_map)
+        changes = changes_of(layer)
+        self.stretch = ", ".join(stretches(road_map, changes, layer.crs())[:MOST_NAMED]) or road_map.title
+        self.said.setText(tr("{stretch} is being made again.", stretch=self.stretch))
+        kept = saved(road_map)
+        places = {output: kept[output] if output == "REPORT" else loaded(kept.get(output, QgsProcessing.TEMPORARY_OUTPUT))
+                  for output in {**kept, **dict.fromkeys(road_map.outputs)}}
+        self.run = BackgroundRun("roadmap", {**values_again(road_map, layer), **places}, partial(self._ended, layer.id(), len(changes)))
+        self.bar.setValue(0)
+        self.run.task.progressChanged.connect(lambda percent: self.bar.setValue(round(percent)))
+        self.show()
+
+    def _ended(self, layer_id, count, run, fine):
+        layer = QgsProject.instance().mapLayer(layer_id)
+        if run is not self.run:
+            return
+        self.run = None
+        self.hide()
+        if fine and layer is not None:   # else the project is another one
+            note_made(layer, count)
+            run.load_results()
+        elif not fine and not run.task.isCanceled():
+            say(self.iface, tr("The map was not made again: {reason}", reason=run.reason), Qgis.MessageLevel.Warning)
+        if self.wanted is not None and layer is not None:
+            self._begin()
+
+
+def stretches(road_map: RoadMap, changes: list[str], crs: QgsCoordinateReferenceSystem) -> list[str]:
+    """Each road with the stations from the first to the last of the changes since a map was made, by the driving lines there."""
+    lines, spans = road_map.layer("DRIVING_LINES"), {}
+    for when, _, *corners in map(str.split, changes if lines is not None else ()):
+        place = brought_to(QgsRectangle(*map(float, corners)), crs, lines.crs())
+        middle = QgsGeometry.fromPointXY(place.center())
+        near = min(lines.getFeatures(place.buffered(NEAR)), key=lambda feature: feature.geometry().distance(middle), default=None)
+        if near is not None and datetime.fromisoformat(when) > road_map.provenance.ended:
+            line = near.geometry().extendLine(NEAR, NEAR)   # a correction may reach beyond its end
+            along = [line.lineLocatePoint(QgsGeometry.fromPointXY(QgsPointXY(x, y)))
+                     for x in (place.xMinimum(), place.xMaximum()) for y in (place.yMinimum(), place.yMaximum())]
+            along = [line.length() - metres for metres in along] if near["direction"] == -1 else along
+            first, last = spans.get(near["road"], (math.inf, -math.inf))
+            start = near["station_m"] - NEAR
+            spans[near["road"]] = min(first, start + min(along)), max(last, start + max(along))
+    return [tr("road {road}, {first:.0f}–{last:.0f} m", road=road, first=first, last=last) for road, (first, last) in sorted(spans.items())]
