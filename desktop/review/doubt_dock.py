@@ -66,14 +66,11 @@ KIND, LENGTH = "lanewright/doubts/kind", "lanewright/doubts/shortest"   # settin
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
-    Where the map is made again while the window is open, the window goes on in the new one, which `made_again` has.
+    Signal `shown` has the place. Where the map is made again while the window is open, it goes on in the new one, which `made_again` has.
     """
 
     shown = pyqtSignal(object)
     made_again = pyqtSignal(object)
-    run_wanted = pyqtSignal(object, object)
-    stage_wanted = pyqtSignal(str, dict)
 
     def __init__(self, iface):
         super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
@@ -150,8 +147,6 @@ class DoubtDock(QDockWidget):
                       row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, row(self.kept, self.report_button),
                       row(self.undo_button, self.vertex_button, self.run_button, self.at_once), self.remaking)
         self.steps = StepsPanel()
-        self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
-        self.steps.stage_wanted.connect(self.stage_wanted)
         self.tabs = QTabWidget(documentMode=True)
         self.tabs.addTab(body, tr("Doubtful places"))
         self.tabs.addTab(self.steps, tr("Steps"))
@@ -528,31 +523,16 @@ class DoubtDock(QDockWidget):
         layer = self.layer
         if layer.isEditable():
             layer.commitChanges()
+            self.hint.hide()
             self.iface.actionPan().trigger()
             self.corrected()
             return
-        moved = partial(self._note_vertex, layer)
-
-        def added(name, rows):
-            note_written(layer, rows)   # what is saved has other numbers
-
-        def ended():
-            layer.geometryChanged.disconnect(moved)
-            layer.committedFeaturesAdded.disconnect(added)
-            layer.editingStopped.disconnect(ended)
-            self.hint.hide()
-
-        layer.geometryChanged.connect(moved)
-        layer.committedFeaturesAdded.connect(added)
-        layer.editingStopped.connect(ended)
+        layer.committedGeometriesChanges.connect(lambda name, moved: [note_change(layer, layer.getFeature(row), line) for row, line in moved.items()])
+        layer.committedFeaturesAdded.connect(lambda name, rows: note_written(layer, rows))   # what is saved has other numbers
         self.iface.setActiveLayer(layer)
         layer.startEditing()
         self.iface.actionVertexToolActiveLayer().trigger()
         self._say(tr("Click a vertex and click where it belongs; Ctrl+Z takes it back. V keeps what was dragged."))
-
-    def _note_vertex(self, layer, number, geometry):
-        note_change(layer, layer.getFeature(number), geometry)
-        self._tell()
 
     def make_again(self) -> None:
         """Make the map again with its corrections, in the background."""
