@@ -147,7 +147,7 @@ class CURBS:
     climb_cost: float = 60.0   # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
     same_curb_distance: float = 0.25   # m across within which chains of two methods are one curb
     method_change_cost: float = 1.0   # m of curb that one method must see beyond the other's chain to be drawn there
-    max_jump_cost: float = 5.0   # m of curb that any jump costs at most
+    max_jump_cost: float = 10.0   # m of curb that any jump costs at most
     distance_penalty: float = 0.03   # share of its value that a metre of curb loses for each metre farther from the track
     tracking_memory: float = 40.0   # m of road after which the best chain alone may still be continued
     # pieces in line

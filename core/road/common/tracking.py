@@ -208,7 +208,7 @@ def _wander(steps, members):
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],
                       look: RoadLook | None = None) -> list[tuple[int, float, float]]:
-    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming.
+    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming, and what continues it.
 
     chains : list of StepChain of one side
     steps : CurbSteps to which they refer
@@ -229,7 +229,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Calla
         # adjacent intervals of one chain are one
         goes_on = selected and selected[-1][:2] == (chain, b)
         selected.append((chain, a, selected.pop()[2] if goes_on else b))
-    return selected[::-1]
+    return _continued(selected[::-1], chains, steps)
 
 
 class _Paths:
@@ -284,8 +284,7 @@ class _Paths:
         gap = np.maximum(a - self.ends[known], 0.0)
         # a gap is crossed in the mean direction of the end before and the start after it
         turn = np.minimum(gap, CURBS.max_extrapolation) * 0.5 * (self.tips[known, 1] + (self.tips[c, 0] if a <= self.starts[c] else 0.0))
-        # a longer gap allows no larger jump: that a curb goes on into a gap must not speak against the curb
-        jump = np.maximum(np.abs(u - at[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * np.minimum(gap, CURBS.max_extrapolation), 0.0)
+        jump = np.maximum(np.abs(u - at[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
         climb = np.maximum(np.abs(h - at[:, 1]) - 0.03 - 0.003 * gap, 0.0)
         cost = CURBS.jump_cost * jump + CURBS.climb_cost * climb
         costly = np.flatnonzero((jump > 0.0) & (known != c))
@@ -311,6 +310,33 @@ class _Paths:
         above, end_above = h - self.look.road_height(s, u - foot), end_h - self.look.road_height(np.array(end_s), end_u - foot)
         climb = np.maximum(np.abs(end_above - above) - 0.03 - 0.003 * gap, 0.0)
         return np.where(level, CURBS.level_jump_cost * jump + CURBS.climb_cost * climb, np.inf)
+
+
+def _continued(selected, chains, steps):
+    """The selection with the chains that go on from a selected one where nothing else was selected.
+
+    To the selection a long gap allows a larger jump: that a curb goes on before the jump must not speak against the curb.
+    """
+    free = sorted({*range(len(chains))} - {chain for chain, _, _ in selected}, key=lambda k: (chains[k].start, k))
+    for sign in (1, -1):
+        for number in free[::sign]:
+            chain = chains[number]
+            position = bisect_left([start for _, start, _ in selected], chain.start)
+            if any(a < chain.end and b > chain.start for _, a, b in selected[max(position - 1, 0):position + 1]):
+                continue
+            parts = selected[position - 1:position] if sign > 0 else selected[position:position + 1]
+            if parts and _goes_on(steps, chains, parts[0], chain, sign):
+                selected.insert(position, (number, chain.start, chain.end))
+    return selected
+
+
+def _goes_on(steps, chains, part, chain, sign):
+    """Does a chain continue a selected interval, along the road (1) or against it (-1), and keep to its offset?"""
+    number, a, b = part
+    members = _between(steps, chains[number].steps, a, b)
+    if not len(members) or np.abs(steps.u[chain.steps] - steps.u[members[::sign][-1]]).max() > CURBS.max_steady_jump:
+        return False
+    return any(_in_line(steps, *(members, chain.steps)[::sign]))
 
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
