@@ -146,8 +146,8 @@ def curb_in_section(dock, places):
     curb = max((row for row in edges.getFeatures() if row["edge"] == "curb"), key=lambda row: row.geometry().length()).geometry()
     middle = curb.interpolate(curb.length() / 2).asPoint()
     dock.show_at(middle, edges.crs())
-    iface.mapCanvas().setCenter(QgsCoordinateTransform(edges.crs(), iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance()).transform(
-        middle))
+    to_map = QgsCoordinateTransform(edges.crs(), iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
+    iface.mapCanvas().setCenter(to_map.transform(middle))
     iface.mapCanvas().zoomScale(300)
     needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
     for clicks in (2, 1):
