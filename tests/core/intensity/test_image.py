@@ -10,11 +10,13 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
 from lanewright.core.intensity.tiled_image import TiledImage, stored_tiles
 from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff, write_display_image
-from lanewright.core.markings.paint.windows import marking_mask
+from lanewright.core.markings.paint.windows import write_mask
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.array_file import SharedArrays
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 gdal = pytest.importorskip("osgeo.gdal")
 
@@ -94,13 +96,15 @@ def as_on_windows(monkeypatch):
 
 
 def test_an_image_is_closed_before_it_takes_its_name(tmp_path, as_on_windows):
-    image = image_of(painted_street(length=20.0), tmp_path / "image.tif")
+    records, along = painted_street(length=20.0), np.linspace(0, 20, 101)
+    image = image_of(records, tmp_path / "image.tif")
     write_display_image(image.path, tmp_path / "display.tif")
-    with marking_mask(tmp_path / "mask.tif", image, ORIGIN) as burn:
-        burn(np.array([5.0]), np.array([1.0]))
+    frame = build_frame(Trajectory(along, ORIGIN[0] + along, np.full(101, ORIGIN[1]), np.full(101, 102.0)))
+    painted = records[records["intensity"] > (PAINT + ASPHALT) / 2]
+    write_mask(tmp_path / "mask.tif", road_points(painted[np.argsort(painted["s"])]), image, frame)
     assert as_on_windows == ["image.tif", "display.tif", "mask.tif"]
     mask = gdal.Open(str(tmp_path / "mask.tif"))
-    assert np.frombuffer(mask.ReadRaster(), np.uint8).sum() == 1
+    assert np.frombuffer(mask.ReadRaster(), np.uint8).sum() * image.geotransform[1]**2 == pytest.approx(20 * 0.15, rel=0.2)
 
 
 def test_without_the_brightness_rule_a_pixel_is_plain_inverse_distance(tmp_path):
