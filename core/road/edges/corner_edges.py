@@ -218,7 +218,7 @@ def _is_corner(tail, head):
     met = _tangents(tail, head)
     if met is None:
         # of a road's own curb the ground tells whether it goes straight on
-        return not tail.piece.kind == head.piece.kind == "main" and max(map(abs, _turns(tail, head))) < EDGE.min_bend_turn
+        return not tail.piece.kind == head.piece.kind == "main" and max(map(abs, _turns(tail, head))) < 0.5 * EDGE.min_arc_turn
     # seen from its own piece a head bends the other way
     return any(bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio
                for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)))
