@@ -16,7 +16,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Phase
 from ..lazy import cv2
-from ..survey.store.records import COORDINATE_SCALE, take_rows
+from ..survey.store.records import COORDINATE_SCALE
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import OUTLIERS
@@ -78,7 +78,7 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
         sections = {key: points.section(*key).records for key in points.all_sections()}
         keep = np.split(_kept_of_all([*sections.values()], settings), np.cumsum([*map(len, sections.values())])[:-1])
         for (key, records), mask in zip(sections.items(), keep):
-            kept.store.put(*key, take_rows(records, mask))
+            kept.store.put(*key, records[mask])
     else:
         size, length = max(int(TASK_WINDOWS * OUTLIERS.window / points.store.section_length), 1), points.store.section_length
         stretches = [(road, list(numbers)) for road in points.roads() for _, numbers in groupby(sorted(points.sections(road)), lambda n: n // size)]
@@ -108,7 +108,7 @@ def kept_of_windows(store: SectionStore, item: Stretch, settings: OutlierSetting
     with store.part() as part:
         for key in store.in_stretch(item):
             first, end = np.searchsorted(s, [store.first_unit(key[1]), store.first_unit(key[1] + 1)])
-            part.put(*key, take_rows(store.section(*key), keep[first:end]))
+            part.put(*key, store.section(*key)[keep[first:end]])
     return part.index()
 
 
