@@ -8,6 +8,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 from scipy.ndimage import binary_dilation
 
+from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
 from ..countries.catalogue import NEUTRAL
 from ..markings.cross_section.beside import BEYOND
@@ -15,7 +16,7 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
-from ..markings.cross_section.weights import BARE, SAME_LANE, SURFACE_END, UNPAINTED
+from ..markings.cross_section.weights import BARE, EDGE_LINE, HATCHING, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import ALIGNMENT, TRACKS
@@ -37,7 +38,27 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
         closed += [lane for k, lane in enumerate(open_tracks) if k not in follows.values()]
         open_tracks = [[*open_tracks[follows[k]], part] if k in follows else [part] for k, part in enumerate(parts)]
         check_cancelled()
-    return [_to_its_ends(_without_steps(lane) if len(lane) > 1 else lane[0], boundaries) for lane in closed + open_tracks]
+    tracks = [_as_elsewhere(_without_steps(lane) if len(lane) > 1 else lane[0], boundaries, estimate) for lane in closed + open_tracks]
+    return [_to_its_ends(track, boundaries) for track in tracks]
+
+
+def _as_elsewhere(track, boundaries, estimate):
+    """The track moved to where it was driven as along most of it, where one painted border leads far aside, or is of a hatched area.
+
+    That border is then of what opens or closes beside the lane, which goes on beside the other one, as wide as elsewhere. This is as rare as a border
+    without a line, but a drive farther off the middle than vehicles scatter is rarer.
+    """
+    weights, sides = estimate.weights, np.stack([track.left, track.right])
+    beside, count = _driven_beside(track, boundaries.s, estimate)
+    room, painted = track.width - np.median(track.width), (sides >= 0).all(axis=0) & boundaries.bounding[sides].all(axis=0)
+    unlike, usual = painted & (np.abs(room) > ALIGNMENT.max_parallel_deviation), (count > 0) & (np.abs(room) < SAME_LANE)
+    cause, share = (track.width > NEUTRAL.widest_lane) | (boundaries.made_of[sides] == HATCHING).any(axis=0), np.zeros(len(track))
+    beside -= np.median(beside[usual]) if usual.any() else beside
+    for first, end in mask_runs(unlike):
+        if cause[first:end].any():
+            middle = np.exp(weights.bare[EDGE_LINE] - 0.5 * (beside[first:end] / weights.track_sigma) ** 2)
+            share[first:end] = (count[first:end] > 0) / (1 + middle + weights.odd_width * weights.track_sigma / weights.driven_sigma)
+    return replace(track, d=track.d + share * np.clip(beside, -np.abs(room) / 2, np.abs(room) / 2), width=track.width - share * room)
 
 
 def _to_its_ends(track, boundaries):
@@ -188,36 +209,45 @@ def _parts(boundaries, estimate, lane_width, line_distance):
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
         if BARE in drawn or bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
-            part = _where_driven(part, boundaries.s, estimate, span, lane_width, BARE in drawn)
+            room, rest = np.maximum(part.width - lane_width, 0.0), estimate.weights.left_over_beside
+            # a lane that ends without a line is off by SAME_LANE; those that share a strip share it evenly or are as unlike as lanes of a road are
+            anywhere = np.full_like(room, SAME_LANE**2) if BARE in drawn else (span.count * room) ** 2 / 12
+            alone = span.count == 1
+            part = _where_driven(part, boundaries.s, estimate, room, [0.0 * anywhere, anywhere] if alone else [
+                anywhere, anywhere + estimate.weights.width_sigma**2], rest[0][2] / rest[1][2] if alone else 1.0)
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
             drives = _drives(part.stations, boundaries.s, estimate, np.arange(estimate.evidence.own))
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
         yield span.interval, part
 
 
-def _where_driven(part, s, estimate, span, lane_width, ends_bare):
-    """The LaneTrack of a lane of a strip that has no paint on both its sides, moved from its share of the strip to where it was driven.
+def _where_driven(part, s, estimate, room, variances, full):
+    """The LaneTrack of a lane moved from its share of the strip that it lies in to where it was driven.
 
-    Beside one line, a lane that is wider than usual has all its width, which is more probable, or is of the usual width and anywhere in it. Where
-    several lanes share a strip, those of the usual width may lie anywhere in it, and they share it evenly or are as unlike as lanes of a road are,
-    both as probable. A lane that `ends_bare`, without a line, is off by SAME_LANE. Vehicles keep to the middle with some scatter; beside a line they
-    rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as the drive is surer.
+    A lane is as wide as its share, or of the usual width and anywhere in the strip. Vehicles keep to the middle with some scatter; where one lane may
+    have all of the strip, they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as
+    the drive is surer.
+
+    room : (N,) m that its share is wider than usual; variances : m², of the place of the lane in both readings, (N,) each
+    full : by how many times more probable it is that one lane has all of the strip; 1 where several share it
     """
-    evidence, weights = estimate.evidence, estimate.weights
-    passes = np.flatnonzero((evidence.directions == span.direction) & np.isfinite(evidence.driven[:, span.interval]))
-    beside = _drives(part.stations, s, estimate, passes) - part.d
-    inside = np.abs(beside) < part.width / 2
-    count = inside.sum(axis=0)
-    beside = (inside * beside).sum(axis=0) / np.maximum(count, 1)
-    room = np.where(count > 0, np.maximum(part.width - lane_width, 0.0), 0.0)
-    anywhere, alone = np.full_like(room, SAME_LANE**2) if ends_bare else (span.count * room) ** 2 / 12, span.count == 1
-    full = weights.left_over_beside[0][2] / weights.left_over_beside[1][2] if alone else 1.0
-    of_place = np.stack([0.0 * anywhere, anywhere] if alone else [anywhere, anywhere + weights.width_sigma**2])
-    variance = of_place + weights.track_sigma**2 / np.maximum(count, 1)
+    weights, (beside, count) = estimate.weights, _driven_beside(part, s, estimate)
+    variance = variances + weights.track_sigma**2 / np.maximum(count, 1)
     probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
-    nothing = alone * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
-    share = np.where(count > 0, (probable * of_place / variance).sum(axis=0) / (probable.sum(axis=0) + nothing), 0.0)
-    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if alone else share > 0.5)
+    nothing = (full > 1) * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
+    share = np.where(count > 0, (probable * variances / variance).sum(axis=0) / (probable.sum(axis=0) + nothing), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if full > 1 else share > 0.5)
+
+
+def _driven_beside(part, s, estimate):
+    """(N,) m, where those drove who drove in a lane and along with it, from its middle, and how many they are."""
+    evidence = estimate.evidence
+    there = np.isfinite(evidence.driven[:, np.searchsorted(estimate.candidates.first, part.stations, side="right") - 1])
+    passes = np.flatnonzero((evidence.directions == part.direction) & there.any(axis=1))
+    beside = _drives(part.stations, s, estimate, passes) - part.d
+    inside = there[passes] & (np.abs(beside) < part.width / 2)
+    count = inside.sum(axis=0)
+    return (inside * beside).sum(axis=0) / np.maximum(count, 1), count
 
 
 def _drives(stations, s, estimate, passes):

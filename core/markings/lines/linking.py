@@ -69,13 +69,19 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
 def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:
     """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the least of several views.
 
-    Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope. Or both keep their distance from one
-    edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That last view is of gaps alone.
+    Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope; those of another carriageway may lead
+    away. Or both keep their distance from one edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That
+    last view is of gaps alone. No line leads across an island or a hatched area.
     """
     middle, reach = (before.s + after.s) / 2, min(before.reach, after.reach)
-    miss = min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, reach**2 / (reach**2 + 4.0)))
     s = np.array([before.s, after.s])
-    d = np.array([before.d, after.d]) + trend.at(s)
+    d, tips = np.array([before.d, after.d]) + trend.at(s), s + [-before.reach, after.reach]
+    if edges.bar(s, d):
+        return np.inf
+    slope = [before.slope, after.slope] + (trend.at(tips) - trend.at(s)) / np.where(tips == s, 1.0, tips - s)
+    pointed = d + reach**4 / (reach**4 + 4.0) * slope * (middle - s)
+    miss = min(abs(pointed[1] - pointed[0]), *(
+        abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, reach**2 / (reach**2 + 4.0))))
     edge = edges.between((s[0], d[0]), (s[1], d[1]))
     if edge is None:
         return miss
@@ -212,7 +218,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
 
 
 def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> LinkedLine:
-    """The line less short strands that lie off the course of the paint before and after them, be that with the other lines or along an edge."""
+    """The line less short strands off the course of the paint before and after them, be that with the other lines, on the road or along an edge."""
     if len(line.strands) < 3:
         return line
     s, d, _, weight = line.places
@@ -229,7 +235,7 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
             kept.append(strand)
             continue
         edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
-        for course in [trend.at] + ([] if edge is None else [edge]):
+        for course in [trend.at, np.zeros_like] + ([] if edge is None else [edge]):
             expected = _robust_level(s[other_rows] - middle, d[other_rows] - course(s[other_rows]), np.minimum(weight[other_rows], 10.0))
             if abs(median(d[strand_rows] - course(s[strand_rows])) - expected) <= LINKS.max_stray_offset:
                 kept.append(strand)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
+import shapely
 
 from ...common.arrays import linked_groups, order_by
 from ...common.parallel import check_cancelled
@@ -19,7 +20,7 @@ from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..objects.shape import middle_line
 from ..road_grid import track_reach
-from ..weights import STRANDS
+from ..weights import SELECTION, STRANDS
 
 
 @dataclass
@@ -307,9 +308,18 @@ LOOKUP_STRETCH = 50.0   # derived: m of road whose edges are listed together
 
 @dataclass
 class EdgesBeside:
-    """The edges along one road: the stations and offsets of each."""
+    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, outlines by station and offset, m."""
 
     edges: list[tuple[np.ndarray, np.ndarray]]
+    areas: Sequence[shapely.Polygon] = ()
+
+    @cached_property
+    def _inner(self):
+        return shapely.STRtree(shapely.buffer(np.array(self.areas, object), -SELECTION.max_bar_end_offset))
+
+    def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
+        """Whether an island or a hatched area lies between two places, (2,) m each."""
+        return bool(len(self.areas)) and len(self._inner.query(shapely.linestrings(s, d), predicate="intersects")) > 0
 
     @cached_property
     def _by_stretch(self):
@@ -345,7 +355,24 @@ def _edges(sections):
 def edges_beside(edges: RoadEdges | EdgeSections | None, roads: list[int]) -> dict[int, EdgesBeside]:
     """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
     kinds = EdgeSections.of(edges)
-    return {road: EdgesBeside([edge for sections in kinds if sections and road in sections for edge in _edges(sections[road])]) for road in roads}
+    return {road: EdgesBeside([edge for sections in kinds if sections and road in sections for edge in _edges(sections[road])],
+                              _islands(kinds.curbs[road]) if kinds.curbs and road in kinds.curbs else ()) for road in roads}
+
+
+def _islands(curbs):
+    """Outlines of the islands of CrossSections, whose sides share a number."""
+    of_island = np.array(curbs.kinds, object)[curbs.d.spans.owner] == "island"
+    number, station, d = (values[of_island & np.isfinite(curbs.d.values)] for values in (curbs.number.values, curbs.d.spans.station, curbs.d.values))
+    return [_area_between(curbs.s[station[number == island]], d[number == island]) for island in np.unique(number)]
+
+
+def _area_between(s, d):
+    """The area between the least and the greatest offset at each station, of (N,) places."""
+    stations, of = np.unique(s, return_inverse=True)
+    low, high = np.full(len(stations), np.inf), np.full(len(stations), -np.inf)
+    np.minimum.at(low, of, d)
+    np.maximum.at(high, of, d)
+    return shapely.Polygon(np.r_[np.c_[stations, low], np.c_[stations, high][::-1]]) if len(stations) > 1 else shapely.Polygon()
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.

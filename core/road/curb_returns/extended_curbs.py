@@ -94,13 +94,12 @@ class _Average:
 
 
 def led_on(ground: GroundRaster, end: FollowedEnds) -> PlanSteps:
-    """The faint curb that continues from an end.
+    """The faint curb that continues from one end, with RETURN.line_direction_length of sure curb behind it.
 
     ground : GroundRaster, averaged
-    end : one of FollowedEnds, RETURN.line_direction_length of sure curb behind it
 
-    Returns PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages; none where nothing
-    continues
+    Returns PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages; none where
+    nothing continues
     """
     x, y, h, tx, ty = (float(v[0]) for v in (end.x, end.y, end.h, end.tx, end.ty))
     near = np.flatnonzero((np.hypot(ground.x - x, ground.y - y) <= RETURN.max_led_length + RETURN.led_length)
@@ -292,7 +291,7 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int, 
     ground = averaged(raster, settings.layer_jump)
     if ground is None:
         return []
-    return [(k, steps) for k in members.tolist() if len(steps := led_on(ground, ends[k:k + 1]))]
+    return [(int(k), steps) for k in members if len(steps := led_on(ground, ends[k:k + 1]))]
 
 
 def _near_ends(survey, road, points, ends):

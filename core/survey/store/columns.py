@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they fit the processor's cache
-
 
 class Columns:
     """Arrays of one length by name, used like a structured array.
@@ -64,11 +62,6 @@ class Columns:
     def shape(self) -> tuple[int]:
         """(N,), as of an array."""
         return (self._length,)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all columns, whether or not they are in memory."""
-        return self._length * self.dtype.itemsize
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -180,16 +173,3 @@ class Columns:
         for name in self.names:
             records[name] = self[name]
         return records
-
-
-def columns_in_order(records: np.ndarray, order: np.ndarray) -> Columns:
-    """Columns of the (M,) rows of a structured array in a given order; each row is read once."""
-    dtype = records.dtype
-    arrays = {name: np.empty(len(order), dtype[name]) for name in dtype.names or ()}
-    buffer = np.empty(min(len(order), ROW_CHUNK), dtype)
-    for first in range(0, len(order), ROW_CHUNK):
-        rows = order[first:first + ROW_CHUNK]
-        chunk = np.take(records, rows, out=buffer[:len(rows)], mode="clip")
-        for name, array in arrays.items():
-            array[first:first + len(rows)] = chunk[name]
-    return Columns(arrays, dtype, len(order))

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import ROAD_EDGES, Features
+from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
 from lanewright.core.driving.lanes import laid_out
 from lined_streets import EAST, HEIGHT, Street
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Polygon
 
 LENGTH = 200.0
 
@@ -59,13 +59,35 @@ def test_a_lane_keeps_its_width_where_it_was_taken_to_reach_over_the_beginning_o
     np.testing.assert_allclose(kept.width, 3.2)
 
 
-@pytest.mark.parametrize("again", [(), (1.75,)])
-def test_where_lines_part_farther_than_lanes_are_built_wide_one_that_nobody_drove_lies_beside_either_of_them_and_both_are_said(again):
+def street_whose_left_lines_part(again=()):
+    """From 70 to 87 m the edge line leads 1.7 m away from a lane of 3.5 m on the left of the centre line."""
     street = Street(length=120.0, vehicle=-1.75, again=again).paint(-3.5, kind="edge").paint(0.0, kind="centre")
-    street.paint(lambda s: 3.5 + np.clip((s - 70.0) / 10.0, 0.0, 1.7), kind="edge")
-    last = max((row for row in street.lanes()[0].rows if row["direction"] < 0), key=lambda row: row["end_m"])
+    return street.paint(lambda s: 3.5 + np.clip((s - 70.0) / 10.0, 0.0, 1.7), kind="edge")
+
+
+def test_where_lines_part_farther_than_lanes_are_built_wide_one_that_nobody_drove_lies_beside_either_of_them_and_both_are_said():
+    last = max((row for row in street_whose_left_lines_part().lanes()[0].rows if row["direction"] < 0), key=lambda row: row["end_m"])
     assert last["end_m"] == pytest.approx(114.5, abs=0.6)
-    assert again or last["confidence"] <= 0.6 and '"nats": 0.' in last["other"]
+    assert last["confidence"] <= 0.6 and '"nats": 0.' in last["other"]
+
+
+def test_where_lines_part_farther_than_lanes_are_built_wide_a_lane_lies_where_it_was_driven():
+    places = lanes_by_place(street_whose_left_lines_part(again=(1.75,)))
+    driven = places[places[:, 1] > 0.0]
+    assert np.ptp(driven[:, 0]) > 105.0
+    np.testing.assert_allclose(driven[:, 1], 1.75, atol=0.2)
+    np.testing.assert_allclose(driven[driven[:, 0] > 90.0, 1], 1.75, atol=0.1)
+
+
+def test_a_lane_goes_on_as_it_was_driven_where_the_border_of_a_hatched_area_closes_in_on_it():
+    """Between 80 and 120 m an area of a metre takes half a metre of the lane on either side of the centre line."""
+    street = Street(length=LENGTH, vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge").paint(0.0, 5.0, 80.0).paint(0.0, 120.0, 195.0)
+    bars = Features("PolygonZ", MARKINGS)
+    for s in np.arange(80.5, 120.0, 2.0):
+        corners = street.places([s, s + 0.5, s + 0.5, s], [-0.5, -0.5, 0.5, 0.5])
+        bars.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "hatch", "use": "other"})
+    driven = [street.offsets(line) for line, row in street.lanes(markings=bars)[0] if row["direction"] == 1]
+    np.testing.assert_allclose(np.concatenate(driven), -1.75, atol=0.15)
 
 
 def test_a_broad_lane_that_divides_into_two_is_driven_in_its_middle_up_to_there():
