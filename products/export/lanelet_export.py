@@ -238,10 +238,8 @@ class _Drafting:
         for right in rights_of_way(self.source):
             waiting, first = ([parts[name][0 if lanes.type[rows[name]] == "connector" else -1] for name in names if name in parts]
                               for names in (right.waiting, right.first))
-            led = [k for name, k in rows.items() if name in right.waiting or not set(lanes.successors[k]).isdisjoint(right.waiting)]
-            before = shapely.union_all([shapely.make_valid(shapely.polygons(np.concatenate([left, line[::-1]])[:, :2]))
-                                        for left, line in map(lanes.borders, led)])
-            lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
+            lines = [("way", way.id) for way in stops
+                     if right.before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
             if waiting and first:
                 members = {"refers": [("way", signs[number]) for number in right.signs], "yield": [("relation", lanelet.id) for lanelet in waiting],
                            "right_of_way": [("relation", lanelet.id) for lanelet in first], "ref_line": lines}
