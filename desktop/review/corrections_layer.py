@@ -131,10 +131,10 @@ def new_corrections_layer(project: QgsProject, place: str, crs: QgsCoordinateRef
                                           {"driverName": "GPKG", "layerName": TABLE} if in_file else {})
         problem = exporter.errorMessage()
         del exporter  # writes what it has
-        if problem:
+        layer = QgsVectorLayer(source, tr("Corrections"), provider)
+        if problem and not layer.isValid():   # else a colleague has just made it
             raise RoadExtractionError(
                 tr("The corrections cannot be kept in {path}: {problem}. Choose another place.").format(path=place, problem=problem))
-        layer = QgsVectorLayer(source, tr("Corrections"), provider)
     if not NEEDED <= {field.name() for field in layer.fields()}:
         raise RoadExtractionError(tr("{path} holds no layer of corrections. Choose a new name.").format(path=place))
     apply_style(layer, STYLES / "corrections.qml", CORRECTIONS, NAME)

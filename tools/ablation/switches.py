@@ -237,7 +237,7 @@ ROWS = (
         ("letters are no patch", "paint.asphalt_level:_letters", gives(False), "bus lane with bold letters"),
         ("dark cells", "paint.asphalt_level:dark_cells", none_of(), "asphalt beside water, tar, dark repairs (serpentine)"),
         ("pieces too small or too faint", "paint.not_paint:clear_pieces", nth(1)),
-        ("rims of patches", "paint.not_paint:_one_sided", gives(np.False_), "pale repairs across wheel tracks"),
+        ("rims of patches", "paint.windows:two_sided", gives(np.True_), "pale repairs across wheel tracks", "paint.not_paint:two_sided"),
         ("gaps between tracks", "paint.not_paint:_unseen_gaps", none_of(), "edge lines far from the vehicle"),
         ("specks between runs", "paint.not_paint:_between", none_of(), "worn lines"),
         ("raised things", "paint.not_paint:raised_cells", none_of(1), "ends of islands (roundabout), tram stop"),
