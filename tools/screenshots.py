@@ -144,7 +144,11 @@ def curb_in_section(dock, places):
     dock.ask_for_file = places.ask_for_file = lambda: str(folder / "corrections.gpkg")
     edges = result("ROAD_EDGES")
     curb = max((row for row in edges.getFeatures() if row["edge"] == "curb"), key=lambda row: row.geometry().length()).geometry()
-    dock.show_at(curb.interpolate(curb.length() / 2).asPoint(), edges.crs())
+    middle = curb.interpolate(curb.length() / 2).asPoint()
+    dock.show_at(middle, edges.crs())
+    to_map = QgsCoordinateTransform(edges.crs(), iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
+    iface.mapCanvas().setCenter(to_map.transform(middle))
+    iface.mapCanvas().zoomScale(300)
     needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
     for clicks in (2, 1):
         place = curb.nearestPoint(dock.section.line()).asPoint()

@@ -92,7 +92,8 @@ class CurbLine:
     def _write(self, layer, former):
         line = self.lines[-1]
         try:
-            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line))
+            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line),
+                           height_m=round(float(np.median([face.height for face in line])), 3))
         except RoadExtractionError as problem:   # the disk is full, or the database is gone
             self.lines.pop()
             return str(problem)

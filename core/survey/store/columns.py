@@ -47,7 +47,7 @@ class Columns:
     @classmethod
     def concatenate(cls, parts: Sequence[Columns], dtype: Any) -> Columns:
         """Several Columns one after the other; no parts give empty Columns of the dtype."""
-        parts = [part for part in parts if len(part)]
+        parts = [cls.from_records(part) for part in parts if len(part)]
         if len(parts) == 1:
             return parts[0]
         dtype = np.dtype(dtype)
