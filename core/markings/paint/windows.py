@@ -97,16 +97,14 @@ class _Window:
 
     def extract(self, settings: MarkingSettings, noisy: bool, photographed: bool) -> Columns:
         """Paint of the window itself."""
-        nothing = Columns.concatenate([], self.source.road_points.store.dtype)
-        if not len(self._points(self.begin, self.end)):
-            return nothing
         step = max(len(self._points(self.first, self.last)) // MAX_OFFSET_POINTS, 1)
         parts = cells_of_road(self.source.road_points, self.road, self.first, self.last, step)
+        parts_within = [part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end]
         cells = RoadCells.of(parts, self.first, self.last)
-        if cells is None:
-            return nothing
+        if cells is None or not parts_within:
+            return Columns.concatenate([], self.source.road_points.store.dtype)
         mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings, photographed)
-        return self._paint_in([part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end], cells, mask, least)
+        return self._paint_in(parts_within, cells, mask, least)
 
     def _from_image(self, parts, cells, settings, photographed):
         """Cells of paint by thresholds on the image, and the brightness that points on them have at least."""

@@ -19,12 +19,6 @@ def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, lea
 
     Returns CurbSteps, sorted by profile, then outward
     """
-    rows, cells = _rising_cells(lines, min_height, max_height)
-    return measure_corners(lines, rows, cells, min_height, max_height, least_sharpness)
-
-
-def _rising_cells(lines, min_height, max_height):
-    """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
     span = max(int(round(PROFILE.max_rise_width / spacing)), 2)
     # only occupied cells are looked at, profile by profile outward
@@ -55,7 +49,7 @@ def _rising_cells(lines, min_height, max_height):
     best = candidates[best_within(indices.take(candidates), row.take(candidates), (step - 2 * rough).take(candidates), span)]
     row, column, base, slope = (v.take(best) for v in (row, column, base, slope))
     up = _stays_up(low, base, slope, row, column, min_height, spacing)
-    return row[up], column[up]
+    return measure_corners(lines, row[up], column[up], min_height, max_height, least_sharpness)
 
 
 def _stays_up(low, base, slope, rows, columns, min_height, spacing):
