@@ -428,9 +428,9 @@ class PHOTOGRAPHS:
     paint_step: float = 0.5   # of logarithms of brightness from asphalt to paint, to which that of the survey is drawn
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
-    # of one; the share of its brightness left beside the piece, and of its contrast with its darker side left on the other; the logarithm of length
-    # over breadth; nearness of the rim; nearness to paint and not to asphalt in the sun
-    nats: tuple[float, ...] = -0.15, -6.0, -2.0, 1.1, -6.2, 3.1
+    # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
+    # breadth; of nearness of the rim; of nearness to paint and not to asphalt in the sun. Without any of them a piece may be either
+    nats: tuple[float, ...] = -6.0, -2.0, 1.1, -6.2, 3.1
 
 
 @table

@@ -88,8 +88,6 @@ class DoubtDock(QDockWidget):
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
-        self.tool.given_up.connect(self._stop_drawing)
-        self.tool.too_short.connect(lambda: self._hint(tr("A line takes two clicks at least.")))
         self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.pick_at(point))
         self._build()
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
@@ -434,15 +432,18 @@ class DoubtDock(QDockWidget):
         self._say(" ".join(filter(None, (text, tr(
             "Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.")))))
 
-    def _line_drawn(self, line: QgsGeometry) -> None:
+    def _line_drawn(self, vertices: list[QgsPointXY]) -> None:
+        if len(vertices) == 1:
+            self._hint(tr("A line takes two clicks at least."))
+            return
         action, target, piece = self._pending or ("", "", None)
-        crs = self.iface.mapCanvas().mapSettings().destinationCrs()
+        line, crs = QgsGeometry.fromPolylineXY(vertices), self.iface.mapCanvas().mapSettings().destinationCrs()
         self._stop_drawing()
         keep = partial(self._keep, action, target, piece)
         if not action:
             self._fill(max(self.list.currentRow(), 0))
-        elif target == "lane" or not self.snap.isChecked() or \
-                not self._look(lambda ready: snap(self.road_map, line, crs, target, ready), keep):
+        elif vertices and (target == "lane" or not self.snap.isChecked() or
+                           not self._look(lambda ready: snap(self.road_map, line, crs, target, ready), keep)):
             keep(line, crs)
 
     def _keep(self, action, target, piece, line, crs, seen=None):
@@ -578,13 +579,11 @@ COLOUR = "#2166ac"
 class LineTool(QgsMapTool):
     """Left button: a vertex, snapped as the project says. Right button: the line is ready. Backspace: one vertex back. Esc: none.
 
-    `drawn` has the line in the CRS of the map, `given_up` is sent when there is none, and `too_short` where it has one vertex alone:
-    drawing goes on then. What was drawn stays while another tool, such as the hand, is used.
+    `drawn` has the vertices in the CRS of the map, none where the user gave up; of one alone drawing goes on. What was drawn stays while another
+    tool, such as the hand, is used.
     """
 
-    drawn = pyqtSignal(QgsGeometry)
-    given_up = pyqtSignal()
-    too_short = pyqtSignal()
+    drawn = pyqtSignal(list)
 
     def __init__(self, canvas: QgsMapCanvas):
         super().__init__(canvas)
@@ -611,7 +610,7 @@ class LineTool(QgsMapTool):
             event.ignore()  # or the canvas goes back to its last extent
         elif event.key() == Qt.Key.Key_Escape:
             self.clear()
-            self.given_up.emit()
+            self.finish()
 
     def add(self, point: QgsPointXY) -> None:
         """One more vertex."""
@@ -619,16 +618,8 @@ class LineTool(QgsMapTool):
         self._show(self.vertices)
 
     def finish(self) -> None:
-        """Hand the line over."""
-        vertices = list(self.vertices)
-        if len(vertices) == 1:
-            self.too_short.emit()
-            return
-        self.clear()
-        if vertices:
-            self.drawn.emit(QgsGeometry.fromPolylineXY(vertices))
-        else:
-            self.given_up.emit()
+        """Hand the vertices over."""
+        self.drawn.emit(self.vertices)
 
     def clear(self) -> None:
         """Forget what was drawn."""

@@ -68,8 +68,8 @@ def started_without(package):
 
 
 @pytest.mark.parametrize("package, called", [
-    ("numpy,shapely", "numpy, shapely"), ("shapely", "shapely"), ("scipy,lazrs", "scipy, lazrs"), ("laspy,markupsafe", "laspy, markupsafe"),
-    ("pyproj,jinja2", "pyproj, jinja2"), ("cv2,osgeo", "opencv-python-headless, gdal"), ("scipy,shapely,pip", "scipy, shapely")])
+    ("numpy,shapely", "numpy, shapely"), ("shapely", "shapely"), ("laspy,markupsafe", "laspy, markupsafe"),
+    ("pyproj,jinja2", "pyproj, jinja2"), ("cv2,osgeo", "opencv-python-headless, gdal"), ("scipy,lazrs,shapely,pip", "scipy, lazrs, shapely")])
 def test_the_plugin_loads_and_says_what_is_missing(package, called):
     said = started_without(package)
     algorithms, actions = map(int, said["algorithms"].split())

@@ -33,8 +33,7 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
 
     Raises RoadExtractionError if the mask cannot be written.
     """
-    saturated = "" if road_points.has_corrected else saturation_of(road_points).warning
-    if saturated:
+    if not road_points.has_corrected and (saturated := saturation_of(road_points).warning):
         progress.warn(saturated)
     if settings.method is None:
         paint = _extract_from_image(road_points, image, frame, settings, progress, scatter)

@@ -73,7 +73,7 @@ def _are_paint(z, above, light, bright, rim, labels):
     moments = np.array([[ndimage.mean(a * b, of, numbers) for a in places] for b in places])
     # a single cell is as broad as long
     across, along = np.linalg.eigvalsh(moments.transpose(2, 0, 1)).T + 1 / 12
-    features = (np.ones(len(numbers)), np.clip(left / np.maximum(usual, 1.0), 0.0, PHOTOGRAPHS.most_fading),
+    features = (np.clip(left / np.maximum(usual, 1.0), 0.0, PHOTOGRAPHS.most_fading),
                 np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0), np.log(along / across) / 2,
                 np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach),
                 ndimage.mean(np.nan_to_num(light), np.where(bright, labels, 0), numbers))

@@ -21,7 +21,7 @@ from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
+from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore, StoreIndex
 from ..objects.shape import painted_cells
@@ -97,16 +97,14 @@ class _Window:
 
     def extract(self, settings: MarkingSettings, noisy: bool, photographed: bool) -> Columns:
         """Paint of the window itself."""
-        nothing = join_columns([], self.source.road_points.store.dtype)
-        if not len(self._points(self.begin, self.end)):
-            return nothing
         step = max(len(self._points(self.first, self.last)) // MAX_OFFSET_POINTS, 1)
         parts = cells_of_road(self.source.road_points, self.road, self.first, self.last, step)
+        parts_within = [part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end]
         cells = RoadCells.of(parts, self.first, self.last)
-        if cells is None:
-            return nothing
+        if cells is None or not parts_within:
+            return Columns.concatenate([], self.source.road_points.store.dtype)
         mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings, photographed)
-        return self._paint_in([part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end], cells, mask, least)
+        return self._paint_in(parts_within, cells, mask, least)
 
     def _from_image(self, parts, cells, settings, photographed):
         """Cells of paint by thresholds on the image, and the brightness that points on them have at least."""
@@ -168,11 +166,11 @@ class _Window:
             numbers.append(part.numbers_in(grid, cell))
             before += len(part.cell)
         # the columns of all parts are read together
-        records = take_rows(self._points(parts[0].grid.first, parts[-1].grid.last).records, np.concatenate(rows))
+        records = self._points(parts[0].grid.first, parts[-1].grid.last).records[np.concatenate(rows)]
         cell = np.concatenate(numbers)
         if least is not None:
             bright = np.flatnonzero(Points(records).value > least.ravel().take(cell))
-            records, cell = take_rows(records, bright), cell.take(bright)
+            records, cell = records[bright], cell.take(bright)
         spacing = np.rint(track_spacing(cells.occupied).ravel().take(cell) * 1e3).astype(np.uint16)
         return records.with_columns(spacing=spacing)
 

@@ -197,7 +197,7 @@ class _Levels:
                                                                         CURBS.behind_fit_length))
         sums = RunningSums(averages.shape, RETURN.across_cell)
         sums.add(averages)
-        self.before, self.behind, self.smooth = sums.line(-gap - fit, -gap), sums.line(gap, gap + short), sums.mean(-1, 1)
+        self.before, self.behind, self.smooth = SideLines(sums, -gap - fit, -gap), SideLines(sums, gap, gap + short), sums.mean(-1, 1)
         filled = (self.before.n >= CURBS.min_filled_share * (fit + 1)) & (self.behind.n >= CURBS.min_filled_share * (short + 1))
         self.height = np.where(filled, self.behind.level - self.before.level, np.nan)
 

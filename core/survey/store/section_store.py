@@ -21,7 +21,7 @@ from ...execution.weights import EXECUTION
 from ..weights import STORE
 from .array_file import ArrayFile, close_files, new_file, opened
 from .columns import Columns
-from .records import COORDINATE_SCALE, Points, take_rows
+from .records import COORDINATE_SCALE, Points
 
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
 STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
@@ -418,7 +418,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
     for names in (PLACE_KEYS, ALL_KEYS):
         if len(tied):
             places = np.union1d(tied, tied + 1)
-            tied_rows = take_rows(records, order[places])
+            tied_rows = records[order[places]]
             keys = [tied_rows[name] for name in names]
             by_keys = np.lexsort(keys)
             order[places] = order[places[by_keys]]
