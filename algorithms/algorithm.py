@@ -198,7 +198,8 @@ class SettingSpec:
 
     @property
     def optional(self):
-        return self.kind == "text"
+        """Also where a package that knows the default is missing: then that is what the user is told, and not that a number was left out."""
+        return self.kind == "text" or settings_class(self.settings) is None
 
     @property
     def kind(self):

@@ -158,9 +158,8 @@ def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
 def _sign_raster(path, provenance):
     with gdal_exceptions():
         raster = gdal.Open(str(path), gdal.GA_Update)
-        for name, text in {"TIFFTAG_SOFTWARE": provenance.program, "TIFFTAG_DATETIME": provenance.ended.strftime("%Y:%m:%d %H:%M:%S"),
-                           **provenance.tags()}.items():
-            raster.SetMetadataItem(name, text)
+        raster.SetMetadata({**raster.GetMetadata(), "TIFFTAG_SOFTWARE": provenance.program,
+                            "TIFFTAG_DATETIME": provenance.ended.strftime("%Y:%m:%d %H:%M:%S"), **provenance.tags()})
         raster = None  # GDAL writes when it lets go
 
 

@@ -19,7 +19,7 @@ PUBLIC = {
     "survey.frame.road_frame": ("Pass", "RoadFrame", "build_frame"),   # station, offset and height along roads, and single drives on them
     "survey.frame.projection": ("RoadProjection",),   # station and offset of many points
     "survey.frame.placement": ("FrameLines", "line_parts", "lines_in_frame"),   # lines of a layer in the road frame
-    "survey.store.records": ("COORDINATE_SCALE", "Points", "take_rows"),   # points, whose coordinates are whole numbers of 0.1 mm
+    "survey.store.records": ("COORDINATE_SCALE", "Points"),   # points, whose coordinates are whole numbers of 0.1 mm
     "survey.store.columns": ("Columns",),   # records of points, column by column
     "survey.store.road_points": ("RoadPoints",),   # points of the road, by section
     "survey.las.reader": ("CloudHeader", "open_cloud", "read_blocks", "read_headers"),   # LAS, LAZ and COPC files

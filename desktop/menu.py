@@ -173,8 +173,8 @@ class Menu(QObject):
             self.doubts = DoubtDock(self.iface)
             self.doubts.shown.connect(self._show_section)
             self.doubts.made_again.connect(lambda road_map: self.section.goes_on_in(road_map) if self.section is not None else None)
-            self.doubts.run_wanted.connect(self.run_again)
-            self.doubts.stage_wanted.connect(self.open_algorithm)
+            self.doubts.steps.run_wanted.connect(lambda: self.run_again(self.doubts.road_map, self.doubts.layer))
+            self.doubts.steps.stage_wanted.connect(self.open_algorithm)
         (self.doubts.show_steps if steps else self.doubts.go)(maps[0])
 
     def _road_maps(self):
@@ -191,9 +191,9 @@ class Menu(QObject):
 
     def run_again(self, road_map, corrections):
         """Road map with all that a road map was made from, and the corrections made in it, if any."""
-        from .review.steps import saved, values_with
+        from .review.steps import saved, values_again
 
-        self.open_road_map(**values_with(road_map, corrections))
+        self.open_road_map(**values_again(road_map, corrections))
         places = saved(road_map)
         folders = [path.parent for path in map(destination_path, places.values()) if path is not None]
         if folders and self.dialog is not None:

@@ -147,16 +147,12 @@ def metavar(spec):
 def explained(spec):
     """Label, help, default and limits of a parameter in one paragraph."""
     notes = []
-    if not spec.is_output:
-        if spec.default not in (None, ""):
-            value = str(spec.default).lower() if isinstance(spec.default, bool) else spec.default
-            notes.append(tr("default {value}", value=value))
-        elif not spec.optional:
-            notes.append(tr("necessary"))
-        if spec.kind in ("whole", "number"):
-            notes.append(tr("{low:g} to {high:g}", low=spec.limits()[0], high=spec.limits()[1]))
+    if spec.default not in (None, ""):
+        notes.append(tr("default {value}", value=str(spec.default).lower() if isinstance(spec.default, bool) else spec.default))
     elif not spec.optional:
         notes.append(tr("necessary"))
+    if spec.kind in ("whole", "number"):
+        notes.append(tr("{low:g} to {high:g}", low=spec.limits()[0], high=spec.limits()[1]))
     return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
 
 

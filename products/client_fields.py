@@ -360,8 +360,8 @@ class Database(NamedTuple):
 
 
 @contextmanager
-def _used(path, problem_of):
-    """A context in which the client's layers are read or written; RoadExtractionError, in the sentence `problem_of` (path, problem), where not."""
+def _used(path, reading=False):
+    """A context in which the client's layers are read or written; RoadExtractionError where they cannot be."""
     try:
         with gdal_exceptions():
             yield
@@ -369,15 +369,8 @@ def _used(path, problem_of):
         raise RoadExtractionError("The GeoPackage of a client needs GDAL's Python module (osgeo), which is not installed. Install "
                                   "lanewright[gdal] with pip, or write a DXF drawing.") from problem
     except (RuntimeError, sqlite3.Error) as problem:
-        raise RoadExtractionError(problem_of(path, " ".join(str(problem).split()))) from problem
-
-
-def _unreadable(path, problem):
-    return f"{path} could not be read ({problem})."
-
-
-def _unwritable(path, problem):
-    return f"{path} could not be written ({problem})."
+        reason = " ".join(str(problem).split())
+        raise RoadExtractionError(f"{path} could not be read ({reason})." if reading else f"{path} could not be written ({reason}).") from problem
 
 
 def _opened(path, flags=0):
@@ -401,7 +394,7 @@ def layers_of_client(path: str | os.PathLike[str] | Database, crs: str, template
     RoadExtractionError if it cannot be read, or a layer that the template fills is in another CRS.
     """
     ours, result = parse_crs(as_in_file(crs)[0]) if crs else None, {}
-    with _used(path, _unreadable):
+    with _used(path, reading=True):
         kinds = {ogr.wkbPoint: "point", ogr.wkbLineString: "line", ogr.wkbPolygon: "polygon", ogr.wkbMultiPoint: "point",
                  ogr.wkbMultiLineString: "line", ogr.wkbMultiPolygon: "polygon", ogr.wkbNone: "row without a place"}
         types = {ogr.OFTInteger: int, ogr.OFTInteger64: int, ogr.OFTReal: float}
@@ -423,7 +416,7 @@ def write_client_layers(layers: Mapping[str, Features], path: str | Database, of
     Of a database, tables that are there are filled and others made: all of them, or none.
     RoadExtractionError if there is no GDAL that writes it, or the client's file or database does not take the features.
     """
-    with _used(path, _unwritable):
+    with _used(path):
         if office:
             # what a program that has it open keeps in a journal beside it is copied too
             with closing(sqlite3.connect(office)) as database, closing(sqlite3.connect(str(path))) as copy:

@@ -21,7 +21,7 @@ from ..core.markings.paint.asphalt_level import otsu
 from ..core.markings.paint.settings import PaintMethod
 from ..core.markings.road_grid import occupied
 from ..core.survey.store.columns import Columns
-from ..core.survey.store.records import COORDINATE_SCALE, Points, take_rows
+from ..core.survey.store.records import COORDINATE_SCALE, Points
 from ..core.survey.store.road_points import RoadPoints
 
 PEAK_WINDOW = 20.0     # m of station processed together
@@ -70,7 +70,7 @@ class IntensityPeaks:
 def _records_between(road_points, road, first, last):
     """Records with first <= s < last, units of 0.1 mm."""
     records = road_points.window(road, (first - 1) * COORDINATE_SCALE, (last + 1) * COORDINATE_SCALE).records
-    return take_rows(records, (records["s"] >= first) & (records["s"] < last))
+    return records[(records["s"] >= first) & (records["s"] < last)]
 
 
 def profile_peaks(records: Columns, row: np.ndarray, settings: IntensityPeaks) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -147,7 +147,7 @@ def _between(records, row, peak_row, left, right):
     keys = peak_row[order] * width + left[order]
     index = np.searchsorted(keys, row * width + records["d"], side="right") - 1
     peak = order[np.maximum(index, 0)]
-    return take_rows(records, (index >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
+    return records[(index >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak])]
 
 
 # Thresholds on the points of segments across the road, each of one point density and one range (Otsu); bright points with few bright neighbours
@@ -187,7 +187,7 @@ class PointSegments:
             first, last = window * length, (window + 1) * length
             records = _bright(_records_between(road_points, road, first - reach, last + reach), length, limits, self)
             inside = (records["s"] >= first) & (records["s"] < last)
-            return take_rows(records, inside & dense_enough(records, inside, self))
+            return records[inside & dense_enough(records, inside, self)]
 
         yield from ordered_map(paint_in, windows, progress.part(0.5, 1.0))
 
@@ -229,7 +229,7 @@ def _bright(records, length, limits, settings):
         for column, value in limits.get(number, {}).items():
             if 0 <= column - first[1] < table.shape[1]:
                 table[number - first[0], column - first[1]] = value
-    return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
+    return records[Points(records).value > table[window - first[0], segment - first[1]]]
 
 
 def dense_enough(records: Columns, mask: np.ndarray, settings: PointSegments) -> np.ndarray:

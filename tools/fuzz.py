@@ -4,7 +4,7 @@ Seconds are of the processor's, shared among the readers (fuzz_readers.py). Byte
 where atheris is installed (`make fuzz` does that where it can be), what reaches code that no file had reached before is changed further,
 and kept for the next time. A reader may accept a file or refuse it with one sentence (RoadExtractionError); anything else, a run of more
 than ten seconds and memory beyond reason included, is printed once for each place in the code, with the file that caused it.
-With --runs each reader is fed so many files, which are the same every time: nothing that earlier runs kept is used, and no clock is looked at.
+With --runs each reader is fed so many files at random, which are the same every time: no clock is looked at.
 """
 
 import argparse
@@ -138,7 +138,7 @@ def mutate_by_coverage(attempts, is_enough, rng, corpus, report):
     def one(content):
         attempts.one(content)
         if is_enough(attempts):
-            report.write_text(json.dumps(attempts.report()))
+            report.write_text(json.dumps({attempts.title: attempts.report()}))
             sys.stdout.flush()
             os._exit(0)
 
@@ -154,21 +154,24 @@ def mutate_by_coverage(attempts, is_enough, rng, corpus, report):
     atheris.Fuzz()
 
 
-def fuzz(title, options, folder):
-    """Feed the reader of one kind, in this process; its counts go into `options.report`."""
-    with atheris.instrument_imports(include=["lanewright"]) if atheris else nullcontext():
+def fuzz(titles, options, folder):
+    """Feed the readers of some kinds, in this process; their counts go into `options.report`. Led by coverage, it is one reader."""
+    led, counts = atheris and not options.runs, {}
+    with atheris.instrument_imports(include=["lanewright"]) if led else nullcontext():
         load()
-        kind = kinds(folder)[title]
-        for content in kind.seeds:  # imports what is imported late, and proves the seeds whole
-            (folder / kind.name).write_bytes(content)
-            kind.read(folder / kind.name)
+        chosen = {title: kind for title, kind in kinds(folder).items() if title in titles}
+        for kind in chosen.values():
+            for content in kind.seeds:  # imports what is imported late, and proves the seeds whole
+                (folder / kind.name).write_bytes(content)
+                kind.read(folder / kind.name)
     quiet()
-    attempts, rng = Attempts(title, kind, folder, options.keep), np.random.default_rng([options.seed, len(title)])
-    if atheris:
-        corpus = folder / "corpus" if options.runs else options.corpus / title.replace(" ", "_")
-        mutate_by_coverage(attempts, until(options), rng, corpus, options.report)
-    mutate_at_random(attempts, until(options), rng)
-    options.report.write_text(json.dumps(attempts.report()))
+    for title, kind in chosen.items():
+        attempts, rng = Attempts(title, kind, folder, options.keep), np.random.default_rng([options.seed, len(title)])
+        if led:
+            mutate_by_coverage(attempts, until(options), rng, options.corpus / title.replace(" ", "_"), options.report)
+        mutate_at_random(attempts, until(options), rng)
+        counts[title] = attempts.report()
+        options.report.write_text(json.dumps(counts))
 
 
 def quiet():
@@ -178,16 +181,18 @@ def quiet():
     gdal.SetConfigOption("CPL_LOG", os.devnull)
 
 
-def in_a_process_of_its_own(title, options, seconds, report):
-    """What `fuzz` counts; a reader that takes its process with it is a problem too."""
-    given = {"--only": title, "--seconds": seconds, "--runs": options.runs, "--seed": options.seed, "--keep": options.keep,
+def in_a_process_of_its_own(titles, options, seconds, report):
+    """What `fuzz` counts by reader; a reader that takes its process with it is a problem too."""
+    given = {"--only": ",".join(titles), "--seconds": seconds, "--runs": options.runs, "--seed": options.seed, "--keep": options.keep,
              "--corpus": options.corpus, "--report": report}
     code = subprocess.run([sys.executable, __file__, *(str(word) for pair in given.items() for word in pair)],
                           env={**os.environ, "PYTHONHASHSEED": "0"}, stderr=None if options.verbose else subprocess.DEVNULL).returncode
-    if code or not report.exists():
-        print(f"{title}: the process ended with {code}; --verbose says why, and libFuzzer keeps the file in {options.keep}.")
-        return {"tried": 0, "refused": 0, "problems": 1}
-    return json.loads(report.read_text())
+    counts = json.loads(report.read_text()) if report.exists() else {}
+    if code:
+        titled = next((title for title in titles if title not in counts), titles[-1])
+        print(f"{titled}: the process ended with {code}; --verbose says why, and libFuzzer keeps the file in {options.keep}.")
+        counts.pop(titled, None)
+    return {title: counts.get(title, {"tried": 0, "refused": 0, "problems": 1}) for title in titles}
 
 
 def main():
@@ -197,7 +202,7 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("build/fuzz/found"))
     parser.add_argument("--corpus", type=Path, default=Path("build/fuzz/corpus"))
-    parser.add_argument("--only", default="", help="one kind of files")
+    parser.add_argument("--only", default=",".join(TITLES), help="some kinds of files, separated by commas")
     parser.add_argument("--report", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
@@ -205,14 +210,16 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         if options.report:
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-            return fuzz(options.only, options, Path(folder))
-        titles = [title for title in TITLES if options.only in ("", title)]
-        print(f"{len(titles)} readers, {'led by coverage' if atheris else 'at random: atheris is not installed here'}", flush=True)
+            return fuzz(options.only.split(","), options, Path(folder))
+        titles, cores = [title for title in TITLES if title in options.only.split(",")], len(os.sched_getaffinity(0))
+        print(f"{len(titles)} readers, {'at random' if options.runs or not atheris else 'led by coverage'}", flush=True)
         total = {"tried": 0, "refused": 0, "problems": 0}
-        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as readers:
-            counts = readers.map(lambda title: in_a_process_of_its_own(title, options, options.seconds / len(titles), Path(folder) / f"{title}.json"),
-                                 titles)
-            for title, done in zip(titles, counts):
+        # a process that clocks or libFuzzer end has one reader; to start one takes longer than a hundred files
+        together = [titles[k::cores] for k in range(min(cores, len(titles)))] if options.runs else [[title] for title in titles]
+        with ThreadPoolExecutor(cores) as readers:
+            counts = readers.map(lambda some: in_a_process_of_its_own(some, options, options.seconds / len(titles), Path(folder) / f"{some[0]}.json"),
+                                 together)
+            for title, done in (row for some in counts for row in some.items()):
                 print(f"{title}: {done['tried']} files tried, {done['refused']} refused, {done['problems']} problems", flush=True)
                 total = {name: count + done[name] for name, count in total.items()}
     print(f"{total['tried']} files tried, {total['refused']} refused, {total['problems']} problems")

@@ -127,6 +127,7 @@ def doubts():
     needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
     wait(2)
     keep(window, "window_section")
+    curb_in_section(dock, places)
     corrections(places)
     iface.messageBar().clearWidgets()
     dock.hide()
@@ -137,10 +138,35 @@ def doubts():
     places.hide()
 
 
-def corrections(dock):
-    """Three decisions in the window of doubtful places, and the dialog that makes the map again with them."""
+def curb_in_section(dock, places):
+    """A curb drawn in two sections, by three clicks."""
     folder = Path(tempfile.mkdtemp())
-    dock.ask_for_file = lambda: str(folder / "corrections.gpkg")
+    dock.ask_for_file = places.ask_for_file = lambda: str(folder / "corrections.gpkg")
+    edges = result("ROAD_EDGES")
+    curb = max((row for row in edges.getFeatures() if row["edge"] == "curb"), key=lambda row: row.geometry().length()).geometry()
+    middle = curb.interpolate(curb.length() / 2).asPoint()
+    dock.show_at(middle, edges.crs())
+    to_map = QgsCoordinateTransform(edges.crs(), iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
+    iface.mapCanvas().setCenter(to_map.transform(middle))
+    iface.mapCanvas().zoomScale(300)
+    needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
+    for clicks in (2, 1):
+        place = curb.nearestPoint(dock.section.line()).asPoint()
+        for _ in range(clicks):
+            dock.view.clicked.emit(dock.section.offset(place.x(), place.y()))
+            wait(1)
+        if clicks == 2:
+            needed(places.layer is not None and places.layer.featureCount() == 1, f"no curb was added: {dock.said.text()}")
+            for _ in range(4):
+                dock.step(1.0)
+    keep(iface.mainWindow(), "window_section_curb")
+    say(dock.said.text())
+    dock.view.undone.emit(), dock.view.undone.emit()
+    needed(places.layer.featureCount() == 0, "the curb was not taken back")
+
+
+def corrections(dock):
+    """Three decisions in the window of doubtful places, the map being made again with them, and the dialog that would do so."""
 
     def kept(count):
         needed(wait(60, lambda: dock.layer is not None and dock.layer.featureCount() >= count), f"correction {count} was not kept")
@@ -168,6 +194,12 @@ def corrections(dock):
     wait(2)
     keep(iface.mainWindow(), "window_corrections")
     dock.run_button.click()
+    needed(wait(5, dock.remaking.isVisible), "the map is not made again")
+    wait(3)
+    keep(dock, "window_made_again")
+    dock.remaking.cancel()
+    needed(wait(60, lambda: dock.remaking.run is None), "the run was not cancelled")
+    dock.steps.run_wanted.emit()
     window = plugins["lanewright"].menu.dialog
     needed(wait(5, window.isVisible), "the road map dialog did not open for the corrections")
     values = window.createProcessingParameters()

@@ -35,7 +35,7 @@ echo "== core, products, simulator and library, where qgis cannot be imported"
 LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/products tests/simulator tests/library "$@"
 if [ "$chosen" -eq 0 ]; then
   echo "== readers fed with broken files"
-  tools/fuzz.sh --runs 100
+  "$LANEWRIGHT_BUILD/venv/bin/python" tools/fuzz.py --runs 100
 fi
 echo "== the plugin inside QGIS, and real qgis_process"
 run "${part[@]}" tests --ignore tests/core --ignore tests/products --ignore tests/simulator --ignore tests/library "$@"

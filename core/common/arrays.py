@@ -103,10 +103,13 @@ def members_of(number: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
     They are found by sorting: a search of its members for every group compares everything with everything.
     """
     grouped = np.flatnonzero(number >= 0)
-    order = grouped[np.argsort(number[grouped], kind="stable")]
-    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
-    for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(order)]):
-        yield int(number[order[begin]]), order[begin:end]
+    keys = number[grouped]
+    if (keys[1:] < keys[:-1]).any():
+        order = np.argsort(keys, kind="stable")
+        grouped, keys = grouped[order], keys[order]
+    starts = np.flatnonzero(np.diff(keys, prepend=-1))
+    for begin, end in zip(starts.tolist(), [*starts[1:].tolist(), len(keys)]):
+        yield int(keys[begin]), grouped[begin:end]
 
 
 # Runs of True in a mask, stretches of ascending places, and the greatest of neighbours in a row of cells.

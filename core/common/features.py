@@ -138,6 +138,7 @@ CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw/take/seen)"
                Field("target", str, "What is meant (edge/marking/lane)"), ROAD,
                STATION, OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
                Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)"),
+               Field("height_m", float, "Height of a curb that is drawn (m)"),
                Field("other", str, "Second reading that is taken (JSON)"), Field("author", str, "Decided by"),
                Field("decided_at", str, "Decided at (UTC)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen"),

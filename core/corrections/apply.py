@@ -223,6 +223,8 @@ class _Edges(_LineKind):
                      end=correction.station, length=0.0)
         # the two methods say nothing of a place that they did not find
         piece = dict(blank if like is None else like, status=DRAWN, agree=np.nan, rmse=np.nan, sigma=np.nan)
+        if np.isfinite(correction.height):
+            piece["height"] = correction.height
         return self.with_columns(self.with_stations(piece, places), places)
 
 

@@ -43,6 +43,7 @@ class Correction:
     note: str = ""   # the analyst's words
     lanes: tuple[tuple[float, float, int], ...] = ()
     width: float = np.nan   # m of a lane that is drawn, NaN where not said
+    height: float = np.nan   # m of a curb that is drawn, NaN where not said
 
     @property
     def draws(self) -> bool:
@@ -101,10 +102,10 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
     """Read the layer CORRECTIONS.
 
     features : Features of points, lines or rows without geometry, in map coordinates. `action` and `target` are needed; a row without
-        geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind` and `pattern` are used where they are
+        geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind`, `pattern` and `height_m` are used where they are
     crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
     Returns Corrections
-    Raises RoadExtractionError if an action or target is unknown, a row has no place, or what is moved or drawn has no line.
+    Raises RoadExtractionError if an action or target is unknown, a row has no place, what is moved or drawn has no line, or a height is no number.
     """
     result = Corrections()
     geometries, source, survey = features.geometries, parse_crs(features.crs), parse_crs(crs)
@@ -122,12 +123,17 @@ def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "
             raise RoadExtractionError(f"Row {number} of the corrections is to {action} something, which takes a line; it has a point. "
                                       "Draw the line where it belongs.")
         kind, pattern, note = (str(row.get(name) or "").strip() for name in ("kind", "pattern", "note"))
+        try:
+            height = float(row.get("height_m") or np.nan)
+        except (TypeError, ValueError) as error:
+            raise RoadExtractionError(f"Row {number} of the corrections has the height {row['height_m']!r}; it must be a number (m).") from error
         lanes: tuple[tuple[float, float, int], ...] = ()
         if action == "take":
             lanes, kind = _second_reading(row.get("other"), target, number)
         for places in parts:
             (road,), (station,), (offset,) = frame.locate_nearest(*places[len(places) // 2, :2, None])
-            result.rows.append(Correction(number, action, target, places, int(road), float(station), float(offset), kind, pattern, note, lanes))
+            result.rows.append(Correction(number, action, target, places, int(road), float(station), float(offset), kind, pattern, note, lanes,
+                                          height=height))
     return result
 
 

@@ -74,14 +74,8 @@ def pick_line(points: np.ndarray, x: float, y: float, azimuth: float, targets: S
     targets : what is sought, "edge", "marking" or both, of which the nearer and clearer one is taken
     """
     cloud = _Cloud(points)
-    starts = []
-    for target in targets:
-        for turn in np.arange(0.0, 180.0, PICK.turn):
-            mark = cloud.mark(target, x, y, azimuth + turn, PICK.click_reach)
-            if mark is not None:
-                starts.append((mark.strength * np.exp(-(mark.offset / PICK.near) ** 2), azimuth + turn, target, mark))
     # the direction of a low curb is told by how far it can be followed, not by one place of it
-    for _, direction, target, mark in sorted(starts, key=lambda start: -start[0])[:PICK.starts]:
+    for target, direction, mark in cloud.starts(targets, x, y, azimuth + np.arange(0.0, 180.0, PICK.turn), PICK.click_reach)[:PICK.starts]:
         seen = _measured(target, *cloud.followed(target, _beside((x, y), direction, mark.offset), direction, mark))
         if seen.seen >= PICK.shortest:
             return seen
@@ -102,11 +96,10 @@ def face_at(points: np.ndarray, x: float, y: float, azimuth: float) -> Face | No
     .. [1] Sen (1968), Journal of the American Statistical Association 63, 1379-1389.
     """
     cloud = _Cloud(points[(np.abs(points[:, :2] - (x, y)) <= PICK.course).all(axis=1)], PICK.section_step)
-    starts = [(mark.strength * np.exp(-(mark.offset / PICK.near) ** 2), azimuth + turn) for turn in np.arange(-60.0, 61.0, PICK.turn)
-              if (mark := cloud.mark("edge", x, y, azimuth + turn, PICK.section_reach)) is not None]
+    starts = cloud.starts(["edge"], x, y, azimuth + np.arange(-60.0, 61.0, PICK.turn), PICK.section_reach)
     if not starts:
         return None
-    _, direction = max(starts)
+    _, direction, _ = starts[0]
     ahead = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))])
     left = np.array([-ahead[1], ahead[0]])
     for _ in range(2):   # the second time along the curb itself, whose face is not blurred then
@@ -204,6 +197,12 @@ class _Cloud:
         ground = near[:, 2] <= np.quantile(near[:, 2], 0.02) + PICK.tallest
         across, z, intensity = across[ground], near[ground, 2], near[ground, 3]
         return _step(across, z, reach, self.lowest) if target == "edge" else _stripe(across, intensity, reach)
+
+    def starts(self, targets, x, y, directions, reach):
+        """(target, direction, mark) of what is seen across a place in some directions, the clearest and nearest first."""
+        marks = [(target, direction, mark) for target in targets for direction in directions
+                 if (mark := self.mark(target, x, y, direction, reach)) is not None]
+        return sorted(marks, key=lambda start: -start[2].strength * np.exp(-(start[2].offset / PICK.near) ** 2))
 
     def followed(self, target, place, direction, first):
         """(K, 2) places of a line both ways from one of them, the marks seen, and m along it at which they were."""

@@ -79,7 +79,8 @@ class Keep(Executor):
             return
         try:
             names = self._names(phase, items)
-            missing = {name: k for k, name in enumerate(names) if not self._is_kept(name)}
+            kept = set(names) & self._results.keys() if self.folder is None else {name for name in names if self._path(name).exists()}
+            missing = {name: k for k, name in enumerate(names) if name not in kept}
             made = self._made(phase, items, missing, len(names), progress)
             for k, name in enumerate(names):
                 if name not in missing:
@@ -115,9 +116,6 @@ class Keep(Executor):
 
     def _path(self, name):
         return self.folder / f"kept-{name}.plain"
-
-    def _is_kept(self, name):
-        return name in self._results if self.folder is None else self._path(name).exists()
 
     def _kept(self, name, phase, item):
         """A result that is kept; what cannot be read is made again."""

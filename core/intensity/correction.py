@@ -194,7 +194,7 @@ def _levels(road_points, frame, beams, scanners, step):
 
 
 def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
-                      progress: Progress = Progress(), asphalt: AsphaltLook | None = None) -> tuple[RoadPoints, _IntensityReport]:
+                      progress: Progress = Progress()) -> tuple[RoadPoints, _IntensityReport]:
     """Bring asphalt to one intensity at every distance and for every scanner.
 
     The beams of a spinning scanner are equalised first, where they differ. In a first round the
@@ -208,14 +208,13 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     The correction is our own: it needs neither the range nor the angle of incidence of a point.
 
     frame : RoadFrame of the same trajectory
-    asphalt : AsphaltLook of these points or of others of the survey, None to look at these
 
     Returns RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
         `road_points`. NaN for a point measured when the vehicle's position is not known, or by a scanner with too few points to
         know its asphalt. Where nothing can be corrected, the points are returned as they were.
     _IntensityReport; its `reason` says why nothing was corrected
     """
-    asphalt = asphalt or AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
+    asphalt = AsphaltLook.of(road_points, frame, settings, progress.part(0.0, 0.5))
     return in_step([intensity_corrected(road_points, frame, asphalt, progress)], road_points.executor, progress.part(0.5, 1.0))[0]
 
 

@@ -17,6 +17,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import ScratchBuffers, check_cancelled
 from ..common.progress import Progress
 from ..common.setting import Limited, setting
+from ..curves.robust import percentiles
 from ..execution.in_step import Asked, Work, in_step
 from ..execution.phase import THREADS, Phase, digest
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
@@ -350,7 +351,7 @@ def _limits_of_window(road_points, road, number, settings):
     """1 % and 99 % of the intensities of a window with points."""
     values = [points[::max(_sampling_step(points, settings), len(points) // IMAGE.max_ranked_points)].value
               for _, points in _filled_pieces(road_points, road, number)]
-    return np.quantile(np.concatenate(values).astype(float), [0.01, 0.99]).tolist()
+    return percentiles(np.concatenate(values), (1, 99))
 
 
 def _filled_pieces(road_points, road, number):

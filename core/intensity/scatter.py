@@ -22,7 +22,6 @@ from .weights import ASPHALT, IMAGE
 WINDOW_UNITS = round(IMAGE.ranking_window / COORDINATE_SCALE)   # derived: units of road whose points are judged together
 WINDOWS_PER_TASK = 12   # derived: windows that a worker process is given together: at everyday density half a second of its time
 MAX_SCATTER_POINTS = 100_000   # derived: of a window that are examined; of twice as many an evenly spread share
-SAMPLED_WINDOW_STEP = 4   # derived: every fourth window of a road is examined; the others only for scanners that are in none of these
 
 WindowKey = tuple[int, int]   # road, number of the window
 
@@ -72,19 +71,15 @@ class ScannerScatter:
         windows = sum(len(self.noisy_windows(road)) for road in {road for road, _ in self.points})
         filled = sum(bool(count.sum()) for count in self.points.values())
         if not windows:
-            return text + " Paint is searched for in the image."
-        if windows == filled:
-            return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
-                           "found.")
-        return text + (f" Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
-                       "averages, as elongated pieces and rows of dashes; other markings are not found.")
+            return f"{text} Paint is searched for in the image."
+        return (f"{text} Along {windows * length:.0f} of {filled * length:.0f} m most points are of noisy scanners: there paint is searched for in "
+                "averages, as elongated pieces and rows of dashes; other markings are not found.")
 
 
-def windows_of(road_points: RoadPoints, road: int) -> range:
-    """Numbers of the windows of a road."""
-    start, end = road_points.store.span(road)
-    first, last = (int(np.floor(s / COORDINATE_SCALE / WINDOW_UNITS)) for s in (start, end))
-    return range(first, last + 1)
+def windows_of(road_points: RoadPoints) -> list[WindowKey]:
+    """Roads and numbers of the windows of all roads."""
+    ends = ((road, *(int(np.floor(s / COORDINATE_SCALE / WINDOW_UNITS)) for s in road_points.store.span(road))) for road in road_points.roads())
+    return [(road, window) for road, first, last in ends for window in range(first, last + 1)]
 
 
 def place_of(road_points: RoadPoints, windows: tuple[int, int, int]) -> str:
@@ -100,51 +95,33 @@ def _stations(*windows):
 
 def scanner_scatter(road_points: RoadPoints) -> Work:
     """The work that looks at the ScannerScatter of all roads of a survey."""
-    windows = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
-    sampled = {key for key in windows if key[1] % SAMPLED_WINDOW_STEP == 0}
-    roads = {road for road, _ in sampled}
-    sampled |= {key for key in windows if key[0] not in roads}
-    length = WINDOW_UNITS * COORDINATE_SCALE
-    phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (item[0][0], item[0][1], item[-1][1] + 1)),
-                  state=lambda item: [road_points.state(road, window * length, (window + 1) * length) for road, window, _ in item],
-                  listed=WINDOWS_PER_TASK)
-    measured = yield Asked(phase, [(*key, key in sampled) for key in windows], 1.0)
-    counts = {key: count for key, (count, _) in zip(windows, measured)}
-    squares = [entry for _, entry in measured if entry is not None]
-    shares = _shares(squares)
-    missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
-    missed = [(*key, True) for key in windows if key not in sampled and any(counts[key][k] for k in missing if k < len(counts[key]))]
-    if missed:
-        squares += [entry for _, entry in (yield Asked(phase, missed, 1.0))]
-    return ScannerScatter({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts,
-                          _shares(squares, 3))
+    windows = windows_of(road_points)
+    phase = Phase(scatter_of_windows, road_points, (), lambda item: place_of(road_points, (*item[0], item[-1][1] + 1)),
+                  state=lambda item: [road_points.state(road, *_stations(window, window + 1)) for road, window in item], listed=WINDOWS_PER_TASK)
+    measured = yield Asked(phase, windows, 1.0)
+    squares = [entry for _, entry in measured]
+    return ScannerScatter(_shares(squares), {key: count for key, (count, _) in zip(windows, measured)}, _shares(squares, 3))
 
 
-def scatter_of_windows(road_points: RoadPoints,
-                       windows: Sequence[tuple[int, int, bool]]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...] | None]]:
-    """The phase that looks how single points scatter in windows: road, number, and whether the scatter is asked for.
-
-    Returns (scanners,) points of each scanner in a window, and what `_scatter_in_squares` gives, None where it is not asked for.
-    """
-    result = []
-    for road, window, sampled in windows:
-        points = road_points.window(road, *_stations(window, window + 1))
-        result.append((np.bincount(points.scanner), _scatter_in_squares(points) if sampled else None))
-    return result
+def scatter_of_windows(road_points: RoadPoints, windows: Sequence[WindowKey]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...]]]:
+    """The phase that looks how single points scatter in windows: (scanners,) points of each scanner, and what `_scatter_in_squares` gives."""
+    of_windows = (road_points.window(road, *_stations(window, window + 1)) for road, window in windows)
+    return [(np.bincount(points.scanner), _scatter_in_squares(points)) for points in of_windows]
 
 
 def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
     """Scanner, number of points, scatter as a share of asphalt's level and differences of neighbours as a share of the variance, (squares,) each,
-    of squares of 1 m seen by one scanner from one distance.
+    of every fourth square of 1 m along the road, seen by one scanner from one distance.
 
     Taken from raw intensities of the lower half of a square, which holds no paint; squares with few points or without intensity are left out.
     Differences are NaN where few points have a neighbour in their cell of 4 cm.
     """
+    side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
+    points = points[points.records["s"] // side % ASPHALT.scatter_step == 0]
     if not len(points):
         return np.empty(0, np.uint8), np.empty(0, int), np.empty(0), np.empty(0)
     points = points[::max(len(points) // MAX_SCATTER_POINTS, 1)]
     value, scanner = points.intensity, points.scanner
-    side = int(round(ASPHALT.scatter_square / COORDINATE_SCALE))
     square = np.zeros(len(value), np.int32)
     # another pass is another distance
     for key in (points.records["s"] // side, points.records["d"] // side, scanner, points.pass_number):

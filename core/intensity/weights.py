@@ -30,6 +30,7 @@ class _AsphaltWeights:
     # When a scanner is noisy.
     noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
     scatter_square: float = 1.0   # m
+    scatter_step: int = 4   # one of so many squares along the road is looked at
     photographed: float = 0.75   # of the variance: neighbouring points differ less by brightness of photographs, by a scanner's twice as much
     pixel: int = 400   # units of 0.1 mm: points that lie in one such square are neighbours
     min_square_points: int = 30   # points of one scanner

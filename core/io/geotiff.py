@@ -79,8 +79,27 @@ class IntensityImage:
 
     @gdal_exceptions()
     def tiles(self) -> list[tuple[int, int]]:
-        """(column, row) of the first pixel of each tile that may hold data, row by row."""
-        return filled_tiles(self._dataset(0))
+        """(column, row) of the first pixel of each tile that may hold data, row by row.
+
+        Empty tiles are missing from the file. They are found by bisection, without reading pixels.
+        """
+        band, width, height = self._dataset(0).GetRasterBand(1), self.width, self.height
+        waiting, tiles = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
+        while waiting:
+            c0, r0, c1, r1 = waiting.pop()
+            column, row = c0 * GEOTIFF_TILE, r0 * GEOTIFF_TILE
+            flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * GEOTIFF_TILE, width) - column, min(r1 * GEOTIFF_TILE, height) - row)
+            if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
+                continue
+            if c1 - c0 == r1 - r0 == 1:
+                tiles.append((row, column))
+            elif c1 - c0 >= r1 - r0:
+                middle = (c0 + c1) // 2
+                waiting += [(c0, r0, middle, r1), (middle, r0, c1, r1)]
+            else:
+                middle = (r0 + r1) // 2
+                waiting += [(c0, r0, c1, middle), (c0, middle, c1, r1)]
+        return [(column, row) for row, column in sorted(tiles)]
 
     def pixel_of(self, x: Any, y: Any, origin: Any = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
         """(N,) float64 column and row of places, (N,) metres; pixel 0 extends from 0 to 1.
@@ -128,30 +147,6 @@ def _open_raster(path):
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
     return open_raster(path, "Give the GeoTIFF written by “Intensity image”.")
-
-
-def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
-    """(column, row) of the first pixel of each tile of a gdal.Dataset that may hold data, row by row.
-
-    Empty tiles are missing from the file. They are found by bisection, without reading pixels.
-    """
-    band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
-    waiting, tiles = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
-    while waiting:
-        c0, r0, c1, r1 = waiting.pop()
-        column, row = c0 * GEOTIFF_TILE, r0 * GEOTIFF_TILE
-        flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * GEOTIFF_TILE, width) - column, min(r1 * GEOTIFF_TILE, height) - row)
-        if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
-            continue
-        if c1 - c0 == r1 - r0 == 1:
-            tiles.append((row, column))
-        elif c1 - c0 >= r1 - r0:
-            middle = (c0 + c1) // 2
-            waiting += [(c0, r0, middle, r1), (middle, r0, c1, r1)]
-        else:
-            middle = (r0 + r1) // 2
-            waiting += [(c0, r0, c1, middle), (c0, middle, c1, r1)]
-    return [(column, row) for row, column in sorted(tiles)]
 
 
 class _NewGeoTiff:

@@ -16,7 +16,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.phase import THREADS, Executor, Phase
 from ..lazy import cv2
-from ..survey.store.records import COORDINATE_SCALE, take_rows
+from ..survey.store.records import COORDINATE_SCALE
 from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import OUTLIERS
@@ -75,7 +75,10 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
     store = points.store
     kept = replace(RoadPoints.empty_like(points), store=SectionStore(store.dtype, store.section_length, store.folder, store.constants))
     if settings.scope == "all":
-        _put(kept, points, _kept_of_all(points, settings))
+        sections = {key: points.section(*key).records for key in points.all_sections()}
+        keep = np.split(_kept_of_all([*sections.values()], settings), np.cumsum([*map(len, sections.values())])[:-1])
+        for (key, records), mask in zip(sections.items(), keep):
+            kept.store.put(*key, records[mask])
     else:
         size, length = max(int(TASK_WINDOWS * OUTLIERS.window / points.store.section_length), 1), points.store.section_length
         stretches = [(road, list(numbers)) for road in points.roads() for _, numbers in groupby(sorted(points.sections(road)), lambda n: n // size)]
@@ -96,15 +99,6 @@ def _windows(start, end):
     return range(int(np.floor(start / OUTLIERS.window)), int(np.ceil(end / OUTLIERS.window)))
 
 
-def _put(kept, points, keep):
-    """The points of a mask, which goes through them road by road and by station."""
-    first = 0
-    for road, number in points.all_sections():
-        records = points.section(road, number).records
-        kept.store.put(road, number, take_rows(records, keep[first:first + len(records)]))
-        first += len(records)
-
-
 def kept_of_windows(store: SectionStore, item: Stretch, settings: OutlierSettings) -> StoreIndex:
     """The phase that finds outliers, window by window; returns where the points of the sections of a stretch lie that stay."""
     road, *ends = item
@@ -114,7 +108,7 @@ def kept_of_windows(store: SectionStore, item: Stretch, settings: OutlierSetting
     with store.part() as part:
         for key in store.in_stretch(item):
             first, end = np.searchsorted(s, [store.first_unit(key[1]), store.first_unit(key[1] + 1)])
-            part.put(*key, take_rows(store.section(*key), keep[first:end]))
+            part.put(*key, store.section(*key)[keep[first:end]])
     return part.index()
 
 
@@ -141,9 +135,8 @@ def _kept_of_window(store, road, number, settings):
     return keep
 
 
-def _kept_of_all(points, settings):
-    """(N,) bool of all points: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
-    sections = [points.section(*key).records for key in points.all_sections()]
+def _kept_of_all(sections, settings):
+    """(N,) bool of the records of all sections: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
     units = np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)])
     if len(units) < 2:
         return np.ones(len(units), bool)

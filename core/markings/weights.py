@@ -46,6 +46,9 @@ class _AsphaltWeights:
     paint_level: float = 2.0   # times the usual brightness of asphalt: a bin whose median is beyond that is one of paint
     histogram_limits: tuple[float, float] = -6.0, 60.0   # z: the range of Otsu's histogram; a few specular reflections must not stretch it
     rim_width: float = 0.60   # m from the rim of the road: gutters; asphalt is taken from the cells inside
+    local_square: int = 25   # cells: the scatter about a spot is taken in squares of 1 m
+    local_squares: int = 5   # squares in each direction: their median is the scatter of the one in the middle
+    min_local_cells: int = 200   # of a square whose scatter is known
 
 
 ASPHALT = _AsphaltWeights()
@@ -358,10 +361,6 @@ class NOISY:
     spot_sigma: float = 1.25   # cells, of the average in which pieces are searched
     ground_sigma: float = 10.0   # cells, of the average it is compared with: wheel tracks, patches and shadows are wider than paint
     min_density: float = 0.05   # points per cell, averaged so, below which nothing is known
-    scatter_block: int = 25   # cells: the scatter of averages is taken in squares of 1 m
-    scatter_blocks: int = 5   # squares in each direction: their median is the scatter of the one in the middle
-    min_block_cells: int = 200   # of a square whose scatter is known
-    scatter_quantile: float = 0.30   # of a square's contrasts: dark rails are below it, paint is above the median
     ground_contrast: float = 2.0   # spreads: darker cells are no ground, and none beyond the threshold, which may be paint
     slope_sigma: float = 3.0   # cells, of the averaged heights whose slopes are compared
     ground_slope_sigma: float = 12.0   # with those of heights averaged so
@@ -411,28 +410,27 @@ class NOISY:
 class PHOTOGRAPHS:
     """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
 
-    The nats are rounded from a logistic regression over pieces of a simulated town street as a scanner saw it, and of this and a street without
-    paint in the brightness of photographs with shadows, seams and crossfall of light.
+    The nats are rounded from a logistic regression over pieces of four simulated streets in the brightness of photographs with shadows of trees,
+    houses and cars, seams and crossfall of light; every other 20 m of these, and other streets, were kept aside.
     """
 
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
     level_cells: int = 23   # 0.92 m, the diameter of the disc that bright ground has room for and paint has not
     half_maximum_cells: int = 7   # 28 cm in which the brightest cell is looked for
-    square_cells: int = 25   # scatter is taken in squares of 1 m
-    min_square_cells: int = 150   # of a square whose scatter is known
     # two pairs of quantiles of a normal distribution, each with its standard deviations below the median: the first stays asphalt where paint covers
     # two thirds of a square, the second where dark joints and rails cover a fourth
     quantiles: tuple[tuple[float, float], ...] = (0.10, 1.2816), (0.30, 0.5244), (0.25, 0.6745), (0.45, 0.1257)
     painted_square: float = 1.5   # times the scatter of its darker half that its middle scatters: a square with much paint
-    squares_around: int = 5   # squares in each direction: their median is the scatter of the one in the middle
     least_scatter: float = 0.01   # of the brightness of asphalt, where values are coarse
     beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
     most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
-    most_breadth: float = 0.5   # m that count at most: arrows and words are broader
+    sun_squares: float = 8.0   # squares of 20 cm: standard deviation of the mean that tells how bright asphalt in the sun is nearby
+    paint_step: float = 0.5   # of logarithms of brightness from asphalt to paint, to which that of the survey is drawn
+    usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
-    # of one; the logarithm of brightness by `separation`; the share of it left beside the piece, and of its contrast with its darker side left on the
-    # other; breadth, m; the logarithm of length over breadth; nearness of the rim
-    nats: tuple[float, ...] = 1.3, 1.4, -6.8, -2.6, -7.2, 1.5, -6.0
+    # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
+    # breadth; of nearness of the rim; of nearness to paint and not to asphalt in the sun. Without any of them a piece may be either
+    nats: tuple[float, ...] = -6.0, -2.0, 1.1, -6.2, 3.1
 
 
 @table

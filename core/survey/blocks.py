@@ -439,10 +439,11 @@ class _TrackCounts:
 
     def _count(self, key, cell, k, bins, far=slice(0), sums=0):
         """Count (N,) points in so many bins k of cells; the last bin gets the sum of (M,) numbers of `far` points instead."""
-        cells, row = np.unique(cell, return_inverse=True)
-        counted = np.bincount(row * bins + k, minlength=len(cells) * bins).reshape(-1, bins)
+        first, row = int(cell.min()), cell - cell.min()
+        held = np.bincount(row)
+        counted = np.bincount(row * bins + k, minlength=len(held) * bins).reshape(-1, bins)
         np.add.at(counted[:, -1], row[far], sums)
-        self.join({key: dict(zip(cells.tolist(), counted))})
+        self.join({key: {first + number: counted[number] for number in np.flatnonzero(held).tolist()}})
 
 
 class _Coverage(_TrackCounts):

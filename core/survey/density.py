@@ -43,7 +43,10 @@ def counted_cubes(points: Points) -> CountedCubes:
     cubes = [points.records[name] // np.int32(CUBE_SIDE) for name in "zyx"]
     low = [int(cube.min()) for cube in cubes]
     shape = [int(cube.max()) - least + 1 for cube, least in zip(cubes, low)]
-    count = np.bincount(np.ravel_multi_index([cube - least for cube, least in zip(cubes, low)], shape))
+    place = np.zeros(1, np.int32)
+    for cube, least, size in zip(cubes, low, shape):
+        place = place * size + (cube - least)
+    count = np.bincount(place)
     held = np.flatnonzero(count)
     z, y, x = (cube + least for cube, least in zip(np.unravel_index(held, shape), low))
     half = 2**22   # 4,000 km either side, and 32 km up or down

@@ -10,6 +10,7 @@ from processing.core.ProcessingResults import resultsList
 from processing.gui import BatchAlgorithmDialog as qgis_batch
 from processing.gui import BatchPanel as qgis_batch_panel
 from processing.gui.AlgorithmDialog import AlgorithmDialog
+from processing.gui.wrappers import WidgetWrapper
 from qgis import utils
 from qgis.core import (
     Qgis,
@@ -27,7 +28,9 @@ from qgis.core import (
     QgsSettings,
     QgsVectorLayer,
 )
-from qgis.gui import QgsProviderConnectionComboBox
+from qgis.gui import QgsCollapsibleGroupBox, QgsProviderConnectionComboBox
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QShowEvent
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFileDialog, QFormLayout, QInputDialog, QLineEdit, QMenu, QTextBrowser, QWidget
 
 from ...algorithms.destinations import package_and_table, table_of
@@ -38,12 +41,13 @@ from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
 from ..review.corrections_layer import SURVEY, corrections_layers
 from ..survey_widgets import trajectory_beside
-from ..widgets import LAST_INPUT, answers, button, folder_for_results, tell_result, wrapped
+from ..widgets import LAST_INPUT, answers, button, column, folder_for_results, tell_result, wrapped
 from .stage_inputs import name_by_survey, presets
 
 PRESETS = "lanewright/presets"
 SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
 FEWEST_OUTPUTS = 3  # that are worth one place for all
+MOST_OUTPUTS = 6    # that are shown one below the other; more are folded away, for they have one place for all
 
 
 class _OnePlaceForAll:
@@ -82,6 +86,7 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
         self.presets = QMenu(self, aboutToShow=self._list_presets)
         self.presets_button.setMenu(self.presets)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+        self._fold_outputs([definition.name() for definition in algorithm.destinationParameterDefinitions()])
         self.setParameters(presets(algorithm, QgsProject.instance(), utils.iface.activeLayer() if utils.iface is not None else None))
         wrappers = self.mainWidget().wrappers
         if {"CORRECTIONS", "POINT_CLOUDS"} <= set(wrappers):
@@ -91,6 +96,27 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
+
+    def _fold_outputs(self, names):
+        """Many results go into a group that is closed at first: what is to be chosen stands above it."""
+        shown = [self.mainWidget().wrappers[name] for name in names if name in self.mainWidget().wrappers]
+        if len(shown) > MOST_OUTPUTS:
+            layout = shown[0].wrappedWidget().parentWidget().layout()
+            self.folded = QgsCollapsibleGroupBox(tr("Results"))
+            parts = [part for wrapper in shown for part in (wrapper.wrappedLabel(), wrapper.wrappedWidget()) if part is not None]
+            layout.insertWidget(layout.indexOf(parts[0]), self.folded)
+            column(self.folded, *parts)
+            self.folded.setCollapsed(True)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """The focus is on the first parameter, not on the tabs."""
+        super().showEvent(event)
+        first = next(iter(self.mainWidget().wrappers.values()), None)
+        whole = None if first is None else first.widget if isinstance(first, WidgetWrapper) else first.wrappedWidget()
+        for part in (whole, *whole.findChildren(QWidget)) if whole is not None else ():
+            if part.focusPolicy() & Qt.FocusPolicy.TabFocus == Qt.FocusPolicy.TabFocus and part.isEnabled():
+                part.setFocus(Qt.FocusReason.OtherFocusReason)
+                return
 
     def runAsBatch(self) -> None:
         """Our own batch in place of QGIS's."""

@@ -17,7 +17,6 @@ from qgis.core import (
     QgsGeometry,
     QgsProject,
     QgsProviderRegistry,
-    QgsRectangle,
     QgsSpatialIndex,
     QgsUnitTypes,
     QgsVectorLayer,
@@ -27,7 +26,7 @@ from qgis.PyQt.QtWidgets import QFileDialog, QWidget
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import CORRECTIONS, OTHER
-from ...core.corrections.corrections import SEEN, TARGETS
+from ...core.corrections.corrections import SEEN
 from ...processing_provider.call import qgis_fields
 from ...processing_provider.results.road_maps import OUTPUT, RoadMap, brought_to, clouds_of
 from ...processing_provider.styling import PROVIDER, STYLES, apply_style, explain_readings
@@ -39,8 +38,7 @@ NAME = "CORRECTIONS"
 TABLE = "corrections"
 NEEDED = {"action", "target"}        # fields by which a layer of corrections is known
 SURVEY = "lanewright/survey"         # custom property of the layer: whose corrections it has
-CHANGED = "lanewright/changed/"      # custom property of the layer, with what the corrections are about: when one was made or taken back last
-UNMADE = "lanewright/unmade"         # custom property of the layer: xmin,ymin,xmax,ymax of what changed and that no run has made, one a line
+CHANGES = "lanewright/changes"       # custom property of the layer: "time target xmin ymin xmax ymax" of what was made, moved or taken back
 WRITTEN = "lanewright/written"       # custom property of the layer: numbers of the rows that were written here, one a line; others are of colleagues
 FILE = "corrections.gpkg"
 MOVED = 2.0        # m that a piece is moved at most
@@ -54,9 +52,14 @@ def corrections_layers(project: QgsProject) -> list[QgsVectorLayer]:
 
 
 def layer_of(road_map: RoadMap | None) -> QgsVectorLayer | None:
-    """The layer that corrections of a road map go to, None before the first."""
+    """The layer with the corrections of a road map: one that names its survey, else one that names none and lies where it does; None for none."""
     vectors = [] if road_map is None else road_map.vectors
-    return corrections_of_survey(QgsProject.instance(), road_map.survey, vectors[0].extent(), vectors[0].crs()) if vectors else None
+    for layer in corrections_layers(QgsProject.instance()) if vectors else ():
+        survey = layer.customProperty(SURVEY)
+        if survey == road_map.survey or not survey and layer.featureCount() > 0 \
+                and brought_to(vectors[0].extent(), vectors[0].crs(), layer.crs()).intersects(layer.extent()):
+            return layer
+    return None
 
 
 def ask_for_file(parent: QWidget, road_map: RoadMap | None, title: str, name: str, kind: str) -> str:
@@ -87,16 +90,6 @@ def layer_to_write(iface, road_map: RoadMap, ask: Callable[[], str]) -> QgsVecto
     except RoadExtractionError as problem:
         say(iface, str(problem), Qgis.MessageLevel.Warning)
         return None
-
-
-def corrections_of_survey(project: QgsProject, survey: str, extent: QgsRectangle, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer | None:
-    """The layer with the corrections of a survey: one that names it, else one that names none and lies where the survey does."""
-    for layer in corrections_layers(project):
-        layer_survey = layer.customProperty(SURVEY)
-        if layer_survey == survey or not layer_survey and layer.featureCount() > 0 \
-                and brought_to(extent, crs, layer.crs()).intersects(layer.extent()):
-            return layer
-    return None
 
 
 def _placed(line, crs, layer):
@@ -138,10 +131,10 @@ def new_corrections_layer(project: QgsProject, place: str, crs: QgsCoordinateRef
                                           {"driverName": "GPKG", "layerName": TABLE} if in_file else {})
         problem = exporter.errorMessage()
         del exporter  # writes what it has
-        if problem:
+        layer = QgsVectorLayer(source, tr("Corrections"), provider)
+        if problem and not layer.isValid():   # else a colleague has just made it
             raise RoadExtractionError(
                 tr("The corrections cannot be kept in {path}: {problem}. Choose another place.").format(path=place, problem=problem))
-        layer = QgsVectorLayer(source, tr("Corrections"), provider)
     if not NEEDED <= {field.name() for field in layer.fields()}:
         raise RoadExtractionError(tr("{path} holds no layer of corrections. Choose a new name.").format(path=place))
     apply_style(layer, STYLES / "corrections.qml", CORRECTIONS, NAME)
@@ -264,28 +257,23 @@ def note_written(layer: QgsVectorLayer, rows: Iterable[QgsFeature]) -> None:
 def note_change(layer: QgsVectorLayer, row: QgsFeature | dict[str, object], where: QgsGeometry) -> None:
     """Note that a correction has changed: what was made with it before no longer holds there."""
     if row["action"] != SEEN:
-        layer.setCustomProperty(f"{CHANGED}{row['target']}", datetime.now(timezone.utc).isoformat())
         box = where.boundingBox()
-        layer.setCustomProperty(UNMADE, "\n".join([*filter(None, unmade(layer)), ",".join(
-            f"{value:.9g}" for value in (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))]))
+        corners = (f"{value:.9g}" for value in (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()))
+        layer.setCustomProperty(CHANGES, [*changes_of(layer), " ".join((_now(), row["target"], *corners))])
 
 
-def unmade(layer: QgsVectorLayer) -> list[str]:
-    """Extents of what has changed and that no run has made, as `UNMADE` has them."""
-    return str(layer.customProperty(UNMADE) or "").split("\n")
+def changes_of(layer: QgsVectorLayer) -> list[str]:
+    """What has changed, as `CHANGES` has it."""
+    return [str(change) for change in layer.customProperty(CHANGES) or ()]
 
 
-def changes_of(layer: QgsVectorLayer) -> dict[str, object]:
-    """What has changed so far and when, for `note_made`."""
-    return {key: layer.customProperty(key) for key in (UNMADE, *(f"{CHANGED}{target}" for target in TARGETS))}
+def note_made(layer: QgsVectorLayer, count: int) -> None:
+    """Note that a run has made the first of its changes; what changed after it began counts as changed now, for the next run."""
+    layer.setCustomProperty(CHANGES, [f"{_now()} {change.split(' ', 1)[1]}" for change in changes_of(layer)[count:]])
 
 
-def note_made(layer: QgsVectorLayer, before: dict[str, object]) -> None:
-    """Note that a run has made all that had changed `before` it began; what changed meanwhile counts as changed now, for the next run."""
-    layer.setCustomProperty(UNMADE, "\n".join(unmade(layer)[len(str(before.pop(UNMADE) or "").split("\n")):]))
-    for key, when in before.items():
-        if layer.customProperty(key) != when:
-            layer.setCustomProperty(key, datetime.now(timezone.utc).isoformat())
+def _now():
+    return datetime.now(timezone.utc).isoformat()
 
 
 def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | None:
@@ -293,9 +281,9 @@ def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | N
 
     unmade : no run has made them yet, so that a row of which nothing is known counts as made now
     """
-    noted = layer.customProperty(f"{CHANGED}{target}")
-    if noted:
-        return datetime.fromisoformat(str(noted))
+    times = [when for when, of, *_ in map(str.split, changes_of(layer)) if of == target]
+    if times:
+        return datetime.fromisoformat(times[-1])
     return datetime.now(timezone.utc) if unmade and any(
         row["target"] == target and row["action"] != SEEN for row in layer.getFeatures()) else None
 

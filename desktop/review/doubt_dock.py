@@ -66,20 +66,18 @@ KIND, LENGTH = "lanewright/doubts/kind", "lanewright/doubts/shortest"   # settin
 class DoubtDock(QDockWidget):
     """The window. `go` leads to another place; begins again when the road map is another or has changed.
 
-    Signal `shown` has the place; `run_wanted` the road map and the layer of corrections, if any; `stage_wanted` an algorithm and its values.
-    Where the map is made again while the window is open, the window goes on in the new one, which `made_again` has.
+    Signal `shown` has the place. Where the map is made again while the window is open, it goes on in the new one, which `made_again` has.
     """
 
     shown = pyqtSignal(object)
     made_again = pyqtSignal(object)
-    run_wanted = pyqtSignal(object, object)
-    stage_wanted = pyqtSignal(str, dict)
 
     def __init__(self, iface):
         super().__init__(tr("Doubtful places"), iface.mainWindow(), objectName="LanewrightDoubtfulPlaces")
         self.iface = iface
         self.places: list[Doubt] = []
         self.made: dict[int, QgsFeature] = {}   # id of a piece: the correction that was made of it and not yet run
+        self.ours: set[int] = set()   # numbers of the corrections that were written here
         self.at = -1
         self.seen: Doubt | None = None   # what map and section show
         self.road_map: RoadMap | None = None
@@ -90,8 +88,6 @@ class DoubtDock(QDockWidget):
         self.bands: list[QgsRubberBand] = []
         self.tool = LineTool(iface.mapCanvas())
         self.tool.drawn.connect(self._line_drawn)
-        self.tool.given_up.connect(self._stop_drawing)
-        self.tool.too_short.connect(lambda: self._hint(tr("A line takes two clicks at least.")))
         self.pick_tool = QgsMapToolEmitPoint(iface.mapCanvas(), canvasClicked=lambda point, button: self.pick_at(point))
         self._build()
         iface.addTabifiedDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self, [], True)
@@ -149,8 +145,6 @@ class DoubtDock(QDockWidget):
                       row(self.pick_button, self.draw_button, self.snap), self.note, self.hint, row(self.kept, self.report_button),
                       row(self.undo_button, self.vertex_button, self.run_button, self.at_once), self.remaking)
         self.steps = StepsPanel()
-        self.steps.run_wanted.connect(lambda: self.run_wanted.emit(self.road_map, self.layer))
-        self.steps.stage_wanted.connect(self.stage_wanted)
         self.tabs = QTabWidget(documentMode=True)
         self.tabs.addTab(body, tr("Doubtful places"))
         self.tabs.addTab(self.steps, tr("Steps"))
@@ -299,7 +293,7 @@ class DoubtDock(QDockWidget):
         """Look up what was decided, of all places at once: the corrections are many, and so are the pieces."""
         pieces = [piece for place in self.places for piece in place.pieces]
         made = corrections_of(self.layer, pieces, self.places[0].crs) if pieces else {}
-        self.made = {id(pieces[number]): row for number, row in made.items()}
+        self.made, self.ours = {id(pieces[number]): row for number, row in made.items()}, set(written_here(self.layer)) if made else set()
 
     def _decision(self, piece):
         """What was decided about a piece and not yet run, by whom where that was a colleague; "" for nothing."""
@@ -307,7 +301,7 @@ class DoubtDock(QDockWidget):
         if row is None:
             return ""
         text, author = str(WORDS["action"].get(row["action"], row["action"])), row.attributeMap().get("author") or ""
-        return text if row.id() in written_here(self.layer) or not author else f"{text} ({author})"
+        return text if row.id() in self.ours or not author else f"{text} ({author})"
 
     def _may_replace(self, pieces):
         """Whether the decisions about pieces are those that the list shows; where a colleague has made others since, the user says what holds."""
@@ -315,10 +309,8 @@ class DoubtDock(QDockWidget):
         self._note_decisions()
         changed = [f"{shorten(piece.text, MOST_LETTERS)}\n  → {self._decision(piece) or tr('taken back')}"
                    for piece in pieces if self.made.get(id(piece)) != shown[id(piece)]]
-        if not changed or self.ask(tr("This was decided otherwise meanwhile:\n\n{changes}\n\nShall your decision take its place?").format(
-                changes="\n".join(changed))):
-            return True
-        return False
+        return not changed or self.ask(tr("This was decided otherwise meanwhile:\n\n{changes}\n\nShall your decision take its place?").format(
+            changes="\n".join(changed)))
 
     def ask(self, question: str) -> bool:
         """The user's yes or no."""
@@ -440,15 +432,18 @@ class DoubtDock(QDockWidget):
         self._say(" ".join(filter(None, (text, tr(
             "Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.")))))
 
-    def _line_drawn(self, line: QgsGeometry) -> None:
+    def _line_drawn(self, vertices: list[QgsPointXY]) -> None:
+        if len(vertices) == 1:
+            self._hint(tr("A line takes two clicks at least."))
+            return
         action, target, piece = self._pending or ("", "", None)
-        crs = self.iface.mapCanvas().mapSettings().destinationCrs()
+        line, crs = QgsGeometry.fromPolylineXY(vertices), self.iface.mapCanvas().mapSettings().destinationCrs()
         self._stop_drawing()
         keep = partial(self._keep, action, target, piece)
         if not action:
             self._fill(max(self.list.currentRow(), 0))
-        elif target == "lane" or not self.snap.isChecked() or \
-                not self._look(lambda ready: snap(self.road_map, line, crs, target, ready), keep):
+        elif vertices and (target == "lane" or not self.snap.isChecked() or
+                           not self._look(lambda ready: snap(self.road_map, line, crs, target, ready), keep)):
             keep(line, crs)
 
     def _keep(self, action, target, piece, line, crs, seen=None):
@@ -456,9 +451,10 @@ class DoubtDock(QDockWidget):
         layer = self._layer_to_write()
         if layer is not None and self._may_replace([] if piece is None else [piece]):
             location = {} if piece is None else dict(road=piece.road, station_m=piece.station, offset_m=piece.offset)
-            pattern = {"pattern": "dashed" if seen.dashed else "solid"} if seen is not None and target == "marking" and action == "draw" else {}
+            measured = {} if seen is None else {"height_m": round(seen.step, 3)} if target == "edge" else \
+                {"pattern": "dashed" if seen.dashed else "solid"} if action == "draw" else {}
             self._write(layer, line, crs, self.made.get(id(piece)), action=action, target=target,
-                           note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **pattern)
+                           note=self.note.text() or (evidence(seen) if seen is not None else None), **location, **measured)
             self.note.clear()
             self.corrected()
             if piece is not None and self.place is not None and piece in self.place.pieces:
@@ -529,31 +525,16 @@ class DoubtDock(QDockWidget):
         layer = self.layer
         if layer.isEditable():
             layer.commitChanges()
+            self.hint.hide()
             self.iface.actionPan().trigger()
             self.corrected()
             return
-        moved = partial(self._note_vertex, layer)
-
-        def added(name, rows):
-            note_written(layer, rows)   # what is saved has other numbers
-
-        def ended():
-            layer.geometryChanged.disconnect(moved)
-            layer.committedFeaturesAdded.disconnect(added)
-            layer.editingStopped.disconnect(ended)
-            self.hint.hide()
-
-        layer.geometryChanged.connect(moved)
-        layer.committedFeaturesAdded.connect(added)
-        layer.editingStopped.connect(ended)
+        layer.committedGeometriesChanges.connect(lambda name, moved: [note_change(layer, layer.getFeature(row), line) for row, line in moved.items()])
+        layer.committedFeaturesAdded.connect(lambda name, rows: note_written(layer, rows))   # what is saved has other numbers
         self.iface.setActiveLayer(layer)
         layer.startEditing()
         self.iface.actionVertexToolActiveLayer().trigger()
         self._say(tr("Click a vertex and click where it belongs; Ctrl+Z takes it back. V keeps what was dragged."))
-
-    def _note_vertex(self, layer, number, geometry):
-        note_change(layer, layer.getFeature(number), geometry)
-        self._tell()
 
     def make_again(self) -> None:
         """Make the map again with its corrections, in the background."""
@@ -598,13 +579,11 @@ COLOUR = "#2166ac"
 class LineTool(QgsMapTool):
     """Left button: a vertex, snapped as the project says. Right button: the line is ready. Backspace: one vertex back. Esc: none.
 
-    `drawn` has the line in the CRS of the map, `given_up` is sent when there is none, and `too_short` where it has one vertex alone:
-    drawing goes on then. What was drawn stays while another tool, such as the hand, is used.
+    `drawn` has the vertices in the CRS of the map, none where the user gave up; of one alone drawing goes on. What was drawn stays while another
+    tool, such as the hand, is used.
     """
 
-    drawn = pyqtSignal(QgsGeometry)
-    given_up = pyqtSignal()
-    too_short = pyqtSignal()
+    drawn = pyqtSignal(list)
 
     def __init__(self, canvas: QgsMapCanvas):
         super().__init__(canvas)
@@ -631,7 +610,7 @@ class LineTool(QgsMapTool):
             event.ignore()  # or the canvas goes back to its last extent
         elif event.key() == Qt.Key.Key_Escape:
             self.clear()
-            self.given_up.emit()
+            self.finish()
 
     def add(self, point: QgsPointXY) -> None:
         """One more vertex."""
@@ -639,16 +618,8 @@ class LineTool(QgsMapTool):
         self._show(self.vertices)
 
     def finish(self) -> None:
-        """Hand the line over."""
-        vertices = list(self.vertices)
-        if len(vertices) == 1:
-            self.too_short.emit()
-            return
-        self.clear()
-        if vertices:
-            self.drawn.emit(QgsGeometry.fromPolylineXY(vertices))
-        else:
-            self.given_up.emit()
+        """Hand the vertices over."""
+        self.drawn.emit(self.vertices)
 
     def clear(self) -> None:
         """Forget what was drawn."""

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from datetime import datetime
+from functools import partial
+
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsPointXY, QgsProcessing, QgsProject, QgsRectangle, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QProgressBar, QWidget
 
@@ -9,8 +13,8 @@ from ...processing_provider.results.road_maps import RoadMap, brought_to, road_m
 from ...processing_provider.texts import tr
 from ..background import BackgroundRun, loaded
 from ..widgets import button, column, row, say, wrapped
-from .corrections_layer import changes_of, note_made, unmade
-from .steps import saved, values_with
+from .corrections_layer import changes_of, note_made
+from .steps import saved, values_again
 
 MOST_NAMED = 3   # stretches that are named; of more, the first
 NEAR = 30.0      # m about a correction within which a driving line tells its station
@@ -49,25 +53,25 @@ class Remaking(QWidget):
     def _begin(self):
         (road_map, layer), self.wanted = self.wanted, None
         road_map = next((newer for newer in road_maps(QgsProject.instance()) if newer.survey == road_map.survey), road_map)
-        self.stretch = ", ".join(stretches(road_map, unmade(layer), layer.crs())[:MOST_NAMED]) or road_map.title
+        changes = changes_of(layer)
+        self.stretch = ", ".join(stretches(road_map, changes, layer.crs())[:MOST_NAMED]) or road_map.title
         self.said.setText(tr("{stretch} is being made again.", stretch=self.stretch))
         kept = saved(road_map)
         places = {output: kept[output] if output == "REPORT" else loaded(kept.get(output, QgsProcessing.TEMPORARY_OUTPUT))
                   for output in {**kept, **dict.fromkeys(road_map.outputs)}}
-        layer_id, before = layer.id(), changes_of(layer)
-        self.run = BackgroundRun("roadmap", {**values_with(road_map, layer), **places}, lambda run, fine: self._ended(run, fine, layer_id, before))
+        self.run = BackgroundRun("roadmap", {**values_again(road_map, layer), **places}, partial(self._ended, layer.id(), len(changes)))
         self.bar.setValue(0)
         self.run.task.progressChanged.connect(lambda percent: self.bar.setValue(round(percent)))
         self.show()
 
-    def _ended(self, run, fine, layer_id, before):
+    def _ended(self, layer_id, count, run, fine):
         layer = QgsProject.instance().mapLayer(layer_id)
         if run is not self.run:
             return
         self.run = None
         self.hide()
         if fine and layer is not None:   # else the project is another one
-            note_made(layer, before)
+            note_made(layer, count)
             run.load_results()
         elif not fine and not run.task.isCanceled():
             say(self.iface, tr("The map was not made again: {reason}", reason=run.reason), Qgis.MessageLevel.Warning)
@@ -75,23 +79,19 @@ class Remaking(QWidget):
             self._begin()
 
 
-def stretches(road_map: RoadMap, boxes: list[str], crs: QgsCoordinateReferenceSystem) -> list[str]:
-    """Road and stations of the stretches that lie in boxes (xmin,ymin,xmax,ymax), by the driving lines there; those that overlap are one."""
-    lines, spans = road_map.layer("DRIVING_LINES"), []
-    for box in filter(None, boxes) if lines is not None else ():
-        place = brought_to(QgsRectangle(*map(float, box.split(","))), crs, lines.crs())
+def stretches(road_map: RoadMap, changes: list[str], crs: QgsCoordinateReferenceSystem) -> list[str]:
+    """Each road with the stations from the first to the last of the changes since a map was made, by the driving lines there."""
+    lines, spans = road_map.layer("DRIVING_LINES"), {}
+    for when, _, *corners in map(str.split, changes if lines is not None else ()):
+        place = brought_to(QgsRectangle(*map(float, corners)), crs, lines.crs())
         middle = QgsGeometry.fromPointXY(place.center())
         near = min(lines.getFeatures(place.buffered(NEAR)), key=lambda feature: feature.geometry().distance(middle), default=None)
-        if near is not None:
+        if near is not None and datetime.fromisoformat(when) > road_map.provenance.ended:
             line = near.geometry().extendLine(NEAR, NEAR)   # a correction may reach beyond its end
             along = [line.lineLocatePoint(QgsGeometry.fromPointXY(QgsPointXY(x, y)))
                      for x in (place.xMinimum(), place.xMaximum()) for y in (place.yMinimum(), place.yMaximum())]
             along = [line.length() - metres for metres in along] if near["direction"] == -1 else along
-            spans.append((near["road"], near["station_m"] - NEAR + min(along), near["station_m"] - NEAR + max(along)))
-    merged = []
-    for road, first, last in sorted(spans):
-        if merged and merged[-1][0] == road and first <= merged[-1][2] + 1.0:
-            merged[-1] = road, merged[-1][1], max(last, merged[-1][2])
-        else:
-            merged.append((road, first, last))
-    return [tr("road {road}, {first:.0f}–{last:.0f} m", road=road, first=first, last=last) for road, first, last in merged]
+            first, last = spans.get(near["road"], (math.inf, -math.inf))
+            start = near["station_m"] - NEAR
+            spans[near["road"]] = min(first, start + min(along)), max(last, start + max(along))
+    return [tr("road {road}, {first:.0f}–{last:.0f} m", road=road, first=first, last=last) for road, (first, last) in sorted(spans.items())]

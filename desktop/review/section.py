@@ -28,6 +28,7 @@ REACH = 60.0          # m about a place within which the road's direction is sou
 LEADING = ("DRIVING_LINES", "ROAD_EDGES", "BOUNDARIES", "MARKING_LINES", "TRAJECTORY")  # lines that run along the road, best first
 CORNERS = ("CURB_POINTS", "CORNERS")
 CORNERS_WITHIN = 0.5  # m along the road
+TOUCHES = 0.002       # m before a section at which a line may end that crosses it: one that was drawn in sections ends in one
 DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES": "#00a651",
          "CORRECTIONS": "#d0006f"}
 
@@ -116,8 +117,8 @@ def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossi
         if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
             continue
         title = titles_of(layer)
-        for feature in layer.getFeatures(line.boundingBox()):
-            intersection = feature.geometry().intersection(line)
+        for feature in layer.getFeatures(line.boundingBox().buffered(TOUCHES)):
+            intersection = feature.geometry().extendLine(TOUCHES, TOUCHES).intersection(line)
             for vertex in intersection.vertices() if not intersection.isEmpty() else ():
                 z = _height(feature.geometry(), vertex)
                 result.append(Crossing(section.offset(vertex.x(), vertex.y()), z, title(feature), colour, z + _curb_height(feature)))

@@ -34,7 +34,7 @@ class CurbLine:
         work = partial(face_at, x=x, y=y, azimuth=section.azimuth)
         before, self.face = self.face, in_metres(work, metres_of(self.dock.road_map), self.dock.points_about(x, y))
         if self.face is None:
-            return tr("No step of {step:.0f} cm within {reach:.1f} m of the click; it takes ground on both sides, and a metre of it along the road.",
+            return tr("No step of {step:.0f} cm within {reach:.1f} m of the click; it takes a metre along the road, with ground on both sides.",
                       step=100 * PICK.section_step, reach=PICK.section_reach)
         if any(_apart(self.face, face) < SAME_PLACE for face in (self.lines or [[]])[-1]):
             self.face = None
@@ -48,9 +48,8 @@ class CurbLine:
         layer = None if self.face is None else layer_to_write(self.dock.iface, self.dock.road_map, self.dock.ask_for_file)
         if layer is None:
             return ""
-        line, former = self.lines[-1] if self._goes_on() else [], None
-        if line:
-            former = self._row_of(layer, line)   # None where it was taken back meanwhile
+        line = self.lines[-1] if self._goes_on() else []
+        former = self._row_of(layer, line) if line else None   # None where it was taken back meanwhile
         if former is None:
             line, self.lines = [], []
         self.lines.append([self.face, *line] if line and _apart(self.face, line[0]) < _apart(self.face, line[-1]) else [*line, self.face])
@@ -93,13 +92,13 @@ class CurbLine:
     def _write(self, layer, former):
         line = self.lines[-1]
         try:
-            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line))
+            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line),
+                           height_m=round(float(np.median([face.height for face in line])), 3))
         except RoadExtractionError as problem:   # the disk is full, or the database is gone
             self.lines.pop()
             return str(problem)
         self.dock.corrected.emit()
-        return tr("{curb}, is added. The next click in a section ahead or back goes on, Ctrl+Z takes this one back, Esc ends the line.",
-                  curb=_evidence(line))
+        return tr("{curb}, added. A click in the next section goes on, Ctrl+Z takes it back, Esc ends it.", curb=_evidence(line))
 
 
 def _apart(face, other):
@@ -118,5 +117,5 @@ def _geometry(line: Sequence[Face]) -> QgsGeometry:
 def _evidence(line):
     """What was seen, for the person and for the note of the correction."""
     height, sigma, across = 100 * np.median([(face.height, face.sigma_height, face.sigma_across) for face in line], axis=0)
-    text = tr("Curb of {height:.1f} ± {sigma:.1f} cm, its foot ± {across:.1f} cm", height=height, sigma=sigma, across=across)
-    return text if len(line) == 1 else tr("{curb}, drawn in {count} sections", curb=text, count=len(line))
+    text = tr("Curb of {height:.1f} ± {sigma:.1f} cm, foot ± {across:.1f} cm", height=height, sigma=sigma, across=across)
+    return text if len(line) == 1 else tr("{curb}, in {count} sections", curb=text, count=len(line))

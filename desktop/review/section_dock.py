@@ -88,6 +88,7 @@ class SectionDock(QDockWidget):
 
     def show_at(self, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> None:
         """The section through a place of the map."""
+        self.said.clear()
         for road_map in road_maps(QgsProject.instance(), self.iface.activeLayer()):
             layers = road_map.vectors
             try:

@@ -86,18 +86,16 @@ def _settings(declared, values):
             yield spec.label, text, value != spec.default
 
 
-def values_again(road_map: RoadMap) -> dict[str, object]:
-    """{parameter: value} of the run of a road map, with the settings of steps that were run again by themselves, and where its results lie."""
+def values_again(road_map: RoadMap, corrections: QgsVectorLayer | None = None) -> dict[str, object]:
+    """{parameter: value} of the run of a road map, with the settings of steps that were run again by themselves, and where its results lie.
+
+    Its point clouds are those where they lie now; `corrections` : made in the map, if any
+    """
     values = road_map.values
     for origin in sorted((origin_of(layer) for layer in road_map.layers), key=lambda origin: origin.provenance.ended):
         values |= {name: value for name, value in origin.provenance.values.items() if name in values and name not in (CLOUDS, TRAJECTORY, NAME)}
-    return {**values, **saved(road_map)}
-
-
-def values_with(road_map: RoadMap, corrections: QgsVectorLayer | None) -> dict[str, object]:
-    """`values_again`, with the point clouds where they lie now, and the corrections made in the map, if any."""
     clouds, missing = clouds_of(road_map, QgsProject.instance())
-    return {**values_again(road_map), **({} if missing else {CLOUDS: clouds}), NAME: None if corrections is None else corrections.id()}
+    return {**values, **({} if missing else {CLOUDS: clouds}), NAME: None if corrections is None else corrections.id(), **saved(road_map)}
 
 
 def saved(road_map: RoadMap) -> dict[str, str]:

@@ -94,17 +94,12 @@ def _with_ends(lanes, places, extra):
 
     extra : (lane, 0 for its start or 1 for its end) -> rows of `places`, left and right
     """
-    sides: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    was_end = []
-    for k in range(len(lanes)):
-        inside = np.zeros(int(np.diff(lanes.start)[k]), bool)
-        inside[0], inside[-1] = (k, 0) in extra, (k, 1) in extra
-        was_end.append(np.concatenate([[False] * ((k, 0) in extra), inside, [False] * ((k, 1) in extra)]))
-        for number, border in enumerate(lanes.borders(k)):
-            ends = [places[[extra[k, end][number]]] if (k, end) in extra else border[:0] for end in (0, 1)]
-            sides[number].append(np.concatenate([ends[0], border, ends[1]]))
-    start = np.append(0, np.cumsum([len(border) for border in sides[0]], dtype=int))
-    return replace(lanes, left=np.concatenate(sides[0]), right=np.concatenate(sides[1]), start=start), np.concatenate(was_end).astype(bool)
+    ends, was_end = sorted(extra), np.zeros(len(lanes.left), bool)
+    was_end[[lanes.start[k + end] - end for k, end in ends]] = True
+    rows = [lanes.start[k + end] for k, end in ends]
+    left, right = (np.insert(line, rows, places[[extra[end][side] for end in ends]], axis=0) for side, line in enumerate((lanes.left, lanes.right)))
+    further = np.bincount(np.array([k for k, _ in ends], int), minlength=len(lanes))
+    return replace(lanes, left=left, right=right, start=lanes.start + np.append(0, np.cumsum(further))), np.insert(was_end, rows, False)
 
 
 class _Drafting:
@@ -238,10 +233,8 @@ class _Drafting:
         for right in rights_of_way(self.source):
             waiting, first = ([parts[name][0 if lanes.type[rows[name]] == "connector" else -1] for name in names if name in parts]
                               for names in (right.waiting, right.first))
-            led = [k for name, k in rows.items() if name in right.waiting or not set(lanes.successors[k]).isdisjoint(right.waiting)]
-            before = shapely.union_all([shapely.make_valid(shapely.polygons(np.concatenate([left, line[::-1]])[:, :2]))
-                                        for left, line in map(lanes.borders, led)])
-            lines = [("way", way.id) for way in stops if before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
+            lines = [("way", way.id) for way in stops
+                     if right.before.distance(shapely.LineString(self.draft.nodes[list(way.nodes), :2])) < WIDEST_DOUBLE]
             if waiting and first:
                 members = {"refers": [("way", signs[number]) for number in right.signs], "yield": [("relation", lanelet.id) for lanelet in waiting],
                            "right_of_way": [("relation", lanelet.id) for lanelet in first], "ref_line": lines}

@@ -9,19 +9,20 @@ import numpy as np
 import shapely
 
 from .shared_borders import WIDEST_DOUBLE
-from .sources import RoadMapSource
+from .sources import RoadMapSource, areas_of
 
 GIVE_WAY = {("DE", "205"), ("DE", "206"), ("US", "R1-1"), ("US", "R1-2"), ("CH", "3.01"), ("CH", "3.02"), ("FR", "AB3a"), ("FR", "AB4"),
             ("GB", "601.1"), ("GB", "602")}   # (country, code) of signs at which one stops or gives way
 
 
 class _RightOfWay(NamedTuple):
-    """waiting, first : lane_ids; signs : rows of the layer SIGNALS that say so; conflicts : (row of a way through the junction that waits, row of
-    one that goes first) of ways that cross."""
+    """waiting, first : lane_ids; signs : rows of the layer SIGNALS that say so; before : where they wait; conflicts : (row of a way through the
+    junction that waits, row of one that goes first) of ways that cross."""
 
     waiting: list[str]
     first: list[str]
     signs: list[int]
+    before: shapely.Geometry
     conflicts: list[tuple[int, int]]
 
 
@@ -36,16 +37,17 @@ def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
     Before a sign go the lanes whose ways through the junction cross theirs and that have no such sign.
     """
     lanes = source.lanes
-    rows = {name: k for k, name in enumerate(lanes.lane_id)}
-    crosses = lanes.type == "connector"
-    ways = {name: [k] if crosses[k] else [rows[after] for after in lanes.successors[k] if after in rows and crosses[rows[after]]]
+    rows, crosses = {name: k for k, name in enumerate(lanes.lane_id)}, lanes.type == "connector"
+    ways = {name: {k} if crosses[k] else {rows[after] for after in lanes.successors[k] if after in rows and crosses[rows[after]]}
             for name, k in rows.items()}
-    area = {k: shapely.make_valid(shapely.polygons(np.concatenate([left, right[::-1]])[:, :2]))
-            for k in np.flatnonzero(crosses).tolist() for left, right in [lanes.borders(k)]}
+    area = dict(zip(np.flatnonzero(crosses).tolist(), areas_of(lanes, np.flatnonzero(crosses))))
+
+    def ways_of(names):
+        return set().union(*(ways[name] for name in names))
 
     def conflicts(names, first):
         # of two lanes that lead to several ways, those that cross by more than the stripe that neighbours have between them
-        return [(k, j) for name in names for other in first for k in ways[name] for j in ways[other]
+        return [(k, j) for name in names for other in first for k in sorted(ways[name]) for j in sorted(ways[other])
                 if crosses[rows[name]] and crosses[rows[other]] or area[k].buffer(-WIDEST_DOUBLE).intersects(area[j])]
 
     stated: dict[tuple[str, ...], list[str]] = defaultdict(list)
@@ -54,15 +56,12 @@ def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
             stated[first].append(name)
     signs = {number: [name for name in named(row.get("lanes")) if ways.get(name)]
              for number, row in enumerate(source.signals.rows if source.signals else ()) if (row.get("country"), row.get("code")) in GIVE_WAY}
-    rights = [(names, first, [number for number, at in signs.items() if _meet(ways, names, at)]) for first, names in stated.items()]
-    at_signs = {name for names in signs.values() for name in names}
+    rights = [(names, first, [number for number, at in signs.items() if ways_of(names) & ways_of(at)]) for first, names in stated.items()]
+    known_ways, at_signs = ways_of(name for names in stated.values() for name in names), {name for names in signs.values() for name in names}
     others = sorted(name for name, k in rows.items() if not crosses[k] and name not in at_signs)
     for number, names in signs.items():
-        if names := [name for name in names if not any(_meet(ways, [name], waiting) for waiting in stated.values())]:
-            rights.append((names, [other for other in others if conflicts(names, [other])], [number]))
-    return [_RightOfWay(list(names), list(first), number, conflicts(names, first)) for names, first, number in rights if first]
-
-
-def _meet(ways, names, others):
-    """Whether two groups of lanes have a way through a junction in common."""
-    return not {k for name in names for k in ways[name]}.isdisjoint(k for name in others for k in ways[name])
+        if names := [name for name in names if not ways[name] & known_ways]:
+            rights.append((names, tuple(other for other in others if conflicts(names, [other])), [number]))
+    led = [{name, *after} for name, after in zip(lanes.lane_id, lanes.successors)]
+    return [_RightOfWay(list(names), list(first), number, shapely.union_all(areas_of(lanes, [k for k in rows.values() if led[k] & {*names}])),
+                        conflicts(names, first)) for names, first, number in rights if first]

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from ...core.common.arrays import linked_groups, members_of
 from ...core.driving.layers import Lanes
-from .sources import LEAST_CURB, SAME_LEVEL, RoadMapSource, is_stated, wrapped
+from .sources import LEAST_CURB, SAME_LEVEL, RoadMapSource, areas_of, is_stated, wrapped
 
 WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
 SAME_VERTEX = 0.001       # m in plan between vertices that are one
@@ -333,9 +333,7 @@ def _junctions(lanes):
     ways = [_Way(k, before[lanes.lane_id[k]], row_of[lanes.successors[k][0]]) for k in range(len(lanes))
             if lanes.type[k] == "connector" and lanes.lane_id[k] in before and len(lanes.successors[k]) == 1]
     ways = [way for way in ways if lanes.type[way.exit] == "driving"]
-    borders = [lanes.borders(way.row) for way in ways]
-    areas = np.array([shapely.make_valid(shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2])) for left, right in borders], object)
-    height = np.array([left[:, 2].mean() for left, _ in borders])
+    areas, height = areas_of(lanes, [way.row for way in ways]), np.array([lanes.borders(way.row)[0][:, 2].mean() for way in ways])
     first, second = shapely.STRtree(areas).query(areas, predicate="intersects")
     level = np.abs(height[first] - height[second]) < SAME_LEVEL
     group = linked_groups(first[level], second[level], len(ways))

@@ -13,6 +13,7 @@ import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from ...core.common.arrays import linked_groups, members_of
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import COLOUR, DRIVING_LINES, MARKINGS, ROAD_ATTRIBUTES, Features
 from ...core.curves.line_segments import SegmentIndex, single_lines
@@ -99,6 +100,12 @@ class RoadMapSource:
         return [row[name] for row in rows if str(row.get("line")) == line[5:] and row.get(name) not in (None, "")]
 
 
+def areas_of(lanes: Lanes, rows: Iterable[int]) -> np.ndarray:
+    """(N,) valid polygons of lanes in plan."""
+    rings = [np.concatenate([left, right[::-1]])[:, :2] for left, right in map(lanes.borders, rows)]
+    return np.asarray(shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object)))
+
+
 def is_stated(lanes: Lanes) -> bool:
     """Whether lanes are of a map from elsewhere, which states its borders and ways: all are sure, and none is of a line or edge of a survey."""
     lines = np.concatenate([lanes.left_line, lanes.right_line])
@@ -177,9 +184,7 @@ def _check_places(lanes):
     rows = np.flatnonzero(lanes.type == "driving")
     if not len(rows):
         return
-    borders = [lanes.borders(k) for k in rows]
-    shapes = shapely.make_valid(np.array([shapely.Polygon(np.concatenate([left, right[::-1]])[:, :2]) for left, right in borders], object))
-    height = np.array([left[:, 2].mean() for left, _ in borders])
+    shapes, height = areas_of(lanes, rows), np.array([lanes.borders(k)[0][:, 2].mean() for k in rows])
     for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
         a, b = rows[first], rows[second]
         if first >= second or lanes.road[a] == lanes.road[b] or abs(height[first] - height[second]) > SAME_LEVEL:
@@ -343,12 +348,9 @@ def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
 
 def _groups(shapes: list[Any]) -> list[list[Any]]:
     """Shapes that lie together."""
-    joined = shapely.get_parts(shapely.union_all(shapely.buffer(shapely.force_2d(np.array(shapes, object)), STRIPE_GAP / 2)))
-    groups: list[list[Any]] = [[] for _ in joined]
-    tree = shapely.STRtree(joined)
-    for shape in shapes:
-        groups[int(tree.query(shapely.force_2d(shape).representative_point(), predicate="intersects")[0])].append(shape)
-    return [group for group in groups if group]
+    flat = shapely.force_2d(np.array(shapes, object))
+    group = linked_groups(*shapely.STRtree(flat).query(flat, predicate="dwithin", distance=STRIPE_GAP), len(shapes))
+    return [[shapes[k] for k in rows] for _, rows in members_of(group)]
 
 
 def _corners(shape: Any) -> np.ndarray:

@@ -15,7 +15,6 @@ import shapely
 from ...core.common.arrays import round_step
 from ...core.common.texts import language, numbers, told, tr, word
 from ...core.io.crs import NO_PLACE, place_of_raster
-from ...core.io.geotiff import GEOTIFF_TILE, filled_tiles
 from ...core.io.local_files import gdal_exceptions, open_raster
 from ...core.lazy import cv2, gdal
 
@@ -174,7 +173,7 @@ def _nonzero_range(pair):
 # picture and seconds to load. Colours are blue, green, red, as OpenCV takes them.
 
 MAP_LONGEST_SIDE = 1800      # px
-MAX_AVERAGED_SIDE = 500_000  # px; GDAL averages rasters up to this size, empty tiles included; larger ones are read by tile
+MAX_AVERAGED_SIDE = 500_000  # px; of longer rasters a road is narrower than a pixel of the picture
 MAP_MARGIN = 3.0             # m around the layers
 
 # What is drawn, from the bottom up: layer, condition (field, value) or None, colour, width (px), filled
@@ -191,19 +190,21 @@ MAP_STYLE = (
 
 
 @gdal_exceptions()
-def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]]:
-    """((H, W) uint8 grey, 0 where there is no data; its (min x, min y, max x, max y)) of a raster file, small, with stretched contrast."""
+def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]] | None:
+    """((H, W) uint8 grey, 0 where there is no data; its (min x, min y, max x, max y)) of a raster file, small, with stretched contrast.
+
+    None of a raster of more than MAX_AVERAGED_SIDE.
+    """
     dataset = open_raster(path)
     width, height = dataset.RasterXSize, dataset.RasterYSize
+    if max(width, height) > MAX_AVERAGED_SIDE:
+        return None
     scale = min(1.0, longest / max(width, height))
     columns, rows = max(int(width * scale), 1), max(int(height * scale), 1)
     band = dataset.GetRasterBand(1)
     nodata = band.GetNoDataValue()
-    if max(width, height) > MAX_AVERAGED_SIDE:
-        values = _averaged(dataset, columns, rows, nodata)
-    else:
-        data = band.ReadRaster(0, 0, width, height, columns, rows, gdal.GDT_Float32, resample_alg=gdal.GRIORA_Average)
-        values = np.frombuffer(data, np.float32).reshape(rows, columns)
+    data = band.ReadRaster(0, 0, width, height, columns, rows, gdal.GDT_Float32, resample_alg=gdal.GRIORA_Average)
+    values = np.frombuffer(data, np.float32).reshape(rows, columns)
     empty = ~np.isfinite(values)
     if nodata is not None and np.isfinite(nodata):
         empty |= values == np.float32(nodata)
@@ -215,24 +216,6 @@ def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndar
         stretched = 1 + 254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1)
         grey = np.where(empty, 0, np.nan_to_num(stretched)).astype(np.uint8)
     return grey, extent
-
-
-def _averaged(dataset, columns, rows, nodata):
-    """(rows, columns) means of the values of a raster, read tile by tile; NaN where there are none."""
-    band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
-    total, count = np.zeros((2, rows, columns))
-    for left, top in filled_tiles(dataset):
-        size = min(GEOTIFF_TILE, width - left), min(GEOTIFF_TILE, height - top)
-        values = np.frombuffer(band.ReadRaster(left, top, *size, buf_type=gdal.GDT_Float32), np.float32).reshape(size[::-1])
-        filled = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
-        column, row = (np.arange(first, first + n) * target // source for first, n, target, source in
-                       ((left, size[0], columns, width), (top, size[1], rows, height)))
-        window = slice(row[0], row[-1] + 1), slice(column[0], column[-1] + 1)
-        cells = total[window].shape
-        cell = ((row - row[0])[:, None] * cells[1] + (column - column[0]))[filled]
-        total[window] += np.bincount(cell, values[filled], cells[0] * cells[1]).reshape(cells)
-        count[window] += np.bincount(cell, minlength=cells[0] * cells[1]).reshape(cells)
-    return np.divide(total, count, out=np.full((rows, columns), np.nan), where=count > 0)
 
 
 def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[float]] | None = None, bounds: Sequence[float] | None = None,

@@ -128,3 +128,16 @@ def test_a_removed_preset_is_gone(dialog):
     dialog.save_preset("one")
     dialog.remove_preset("one")
     assert "one" not in presets_of("roadmap")
+
+
+def test_many_results_are_folded_away_and_few_stand_open(dialog):
+    assert dialog.folded.isCollapsed()
+    assert dialog.folded.isAncestorOf(dialog.mainWidget().wrappers["ROAD_EDGES"].wrappedWidget())
+    assert not dialog.folded.isAncestorOf(dialog.mainWidget().wrappers["POINT_CLOUDS"].widget)
+    assert not hasattr(algorithm_of("drivinglines").createCustomParametersWidget(), "folded")
+
+
+def test_the_first_parameter_has_the_focus_when_the_dialog_opens(dialog):
+    dialog.show()
+    assert dialog.mainWidget().wrappers["POINT_CLOUDS"].widget.isAncestorOf(dialog.focusWidget())
+    dialog.close()

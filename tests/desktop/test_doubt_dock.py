@@ -435,6 +435,17 @@ def test_cancel_ends_the_run_and_those_that_wait_and_what_failed_says_why(at_fir
     assert "The disk is full" in at_first.iface.messageBar().currentItem().text() and not runs[1].loaded
 
 
+def test_a_run_without_its_point_clouds_says_that_they_are_not_there(at_first):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    clock = QElapsedTimer()
+    clock.start()
+    while at_first.remaking.run is not None and clock.elapsed() < 60_000:
+        QCoreApplication.processEvents()
+    assert "The map was not made again" in at_first.iface.messageBar().currentItem().text()
+    assert "a.laz" in at_first.iface.messageBar().currentItem().text() and not at_first.remaking.isVisible()
+
+
 def test_on_wish_every_correction_is_made_at_once(at_first, runs):
     at_first.at_once.setChecked(True)
     try:
@@ -458,12 +469,13 @@ def test_a_run_of_a_project_that_was_closed_brings_nothing_into_the_next(at_firs
 def test_what_is_corrected_during_a_run_stays_to_be_made_after_it(at_first, runs):
     at_first.accept_button.click()
     at_first.run_button.click()
-    before = at_first.layer.customProperty("lanewright/changed/edge")
+    changed = lambda: at_first.layer.customProperty("lanewright/changes")[-1].split()[0]  # noqa: E731
+    before = changed()
     at_first.list.setCurrentRow(0)
     at_first.delete_button.click()
-    during = at_first.layer.customProperty("lanewright/changed/edge")
+    during = changed()
     runs[0].ended(True)
-    assert before < during < at_first.layer.customProperty("lanewright/changed/edge"), "later than the run, which does not have it"
+    assert before < during < changed() and len(at_first.layer.customProperty("lanewright/changes")) == 1, "later than the run, which does not have it"
 
 
 def test_what_is_being_drawn_stays_when_the_map_comes_that_was_made_meanwhile(at_first):
@@ -491,12 +503,12 @@ def test_one_key_takes_up_the_vertex_tool_on_the_corrections_and_once_more_keeps
     key.trigger()
     layer = at_first.layer
     assert chosen == [layer] and layer.isEditable() and triggered == ["actionVertexToolActiveLayer"] and "Ctrl+Z" in at_first.hint.text()
-    row, changed = next(layer.getFeatures()), layer.customProperty("lanewright/changed/edge")
+    row = next(layer.getFeatures())
     layer.beginEditCommand("drag"), layer.moveVertex(EAST + 19, NORTH + 1, row.id(), 1), layer.endEditCommand()
     layer.beginEditCommand("drag"), layer.moveVertex(EAST + 30, NORTH + 1, row.id(), 1), layer.endEditCommand()
     layer.undoStack().undo()
-    assert layer.customProperty("lanewright/changed/edge") > changed, "the steps from there are stale"
     key.trigger()
+    assert len(layer.customProperty("lanewright/changes")) == 2, "the steps from there are stale"
     assert not layer.isEditable() and triggered[-1] == "actionPan" and not at_first.hint.isVisible()
     assert [length for *_, length in corrections()] == [pytest.approx(np.hypot(9, 1))]
 

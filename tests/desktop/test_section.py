@@ -43,6 +43,16 @@ def test_lines_cross_it_at_their_offset_and_height_and_say_what_they_are(project
     assert (middle.offset, middle.z) == pytest.approx((0.0, 100.0), abs=0.01) and middle.title.startswith("Lane 1")
 
 
+@pytest.mark.parametrize("azimuth", [0.0, 33.0, 71.0])
+def test_a_line_that_was_drawn_up_to_the_section_crosses_it(project, azimuth):
+    section = Section(EAST, NORTH, azimuth)
+    (x, y), (ahead, north) = 5 * np.array(section.left), section.ahead
+    line = f"LINESTRING Z ({x - 4 * ahead} {y - 4 * north} 100, {x - 1e-4 * ahead} {y - 1e-4 * north} 101)"
+    edges = added(project, "ROAD_EDGES", ROAD_EDGES, (line, dict(road=0, side="left", status="drawn")))
+    crossing, = crossings(section, [edges])
+    assert (crossing.offset, crossing.z) == pytest.approx((5.0, 101.0), abs=0.01)
+
+
 def test_far_from_any_road_there_is_no_section(project):
     assert section_at(EAST + 900, NORTH, road(project)) is None
 

@@ -138,12 +138,14 @@ def drawn():
 
 def test_a_missed_curb_is_added_in_three_clicks_with_the_height_of_its_bottom_as_one_line(curbs):
     click(curbs, 5.2)
-    assert drawn() == [] and "Curb of 12." in curbs.said.text() and " cm, its foot ± " in curbs.said.text(), "it is shown first"
+    assert drawn() == [] and "Curb of 12." in curbs.said.text() and "foot ±" in curbs.said.text(), "it is shown first"
     (foot, bottom), (_, top) = curbs.view.face
     assert (foot, bottom, top) == pytest.approx((5.0, 100.0, 100.12), abs=0.03)
     click(curbs, 5.1)
     (action, target, _, line), = drawn()
-    assert (action, target) == ("draw", "edge") and np.ptp(line[:, 0]) == pytest.approx(1.0, abs=0.02), "one section stands for a metre"
+    height = next(corrections_layers(QgsProject.instance())[0].getFeatures())["height_m"]
+    assert (action, target, height) == ("draw", "edge", pytest.approx(0.12, abs=0.01))
+    assert np.ptp(line[:, 0]) == pytest.approx(1.0, abs=0.02), "one section stands for a metre"
     for _ in range(6):
         curbs.step(1.0)
     click(curbs, 4.9)

@@ -58,7 +58,7 @@ def test_a_correction_makes_its_step_and_all_after_it_stale_until_it_is_taken_ba
     layer = corrected("marking")
     assert [state for _, state in states(project, layer)] == ["fresh", "stale", "stale", "stale"]
     take_back(layer)
-    layer.removeCustomProperty("lanewright/changed/marking")   # as of a layer that comes from elsewhere
+    layer.removeCustomProperty("lanewright/changes")   # as of a layer that comes from elsewhere
     assert {state for _, state in states(project, layer)} == {"fresh"}
 
 
@@ -66,7 +66,7 @@ def test_a_map_made_with_corrections_is_corrected_and_becomes_stale_with_the_nex
     layer = corrected("lane")
     a_map(project, run_at(8, CORRECTIONS="corrections.gpkg"))
     assert states(project, layer)[-2:] == [(LINES, "corrected"), (DRIVEN, "stale")]
-    layer.setCustomProperty("lanewright/changed/lane", "2026-05-31T00:00:00+00:00")   # before the run
+    layer.setCustomProperty("lanewright/changes", ["2026-05-31T00:00:00+00:00 lane 0 0 1 1"])   # before the run
     assert {state for _, state in states(project, layer)} == {"corrected"}
 
 
@@ -87,8 +87,7 @@ def test_the_window_says_whether_the_corrections_are_in_the_map(window, provider
     window.go(road_maps(QgsProject.instance())[0])
     window.accept_button.click()
     assert "when it is made again" in window.kept.text()
-    for target in ("edge", "lane"):
-        window.layer.setCustomProperty(f"lanewright/changed/{target}", "2026-06-01T08:30:00+00:00")
+    window.layer.setCustomProperty("lanewright/changes", [f"2026-06-01T08:30:00+00:00 {target} 0 0 1 1" for target in ("edge", "lane")])
     added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, LINE, run=run_at(9, CORRECTIONS="corrections.gpkg"))
     window.show_steps(road_maps(QgsProject.instance())[0])
     assert "1. They are in this map" in window.kept.text()
@@ -98,14 +97,13 @@ def test_the_window_asks_for_a_run_from_a_step_or_for_the_step_alone(window, pro
     window.show_steps(road_maps(QgsProject.instance())[0])
     panel, asked = window.steps, []
     assert window.tabs.currentWidget() is panel and [step.title for step in panel.steps] == [EDGES, DRIVEN]
-    window.run_wanted.connect(lambda *what: asked.append(what))
-    window.stage_wanted.connect(lambda *what: asked.append(what))
+    panel.run_wanted.connect(lambda: asked.append("run"))
+    panel.stage_wanted.connect(lambda *what: asked.append(what))
     panel.again.click()
     panel.tree.setCurrentItem(panel.tree.topLevelItem(1).child(0))   # one of its settings
     panel.alone.click()
-    (road_map, corrections), (algorithm, values) = asked
-    assert road_map.layers == window.road_map.layers and corrections is None
-    assert algorithm == "lanewright:drivinglines" and "ROAD_EDGES" in values
+    run, (algorithm, values) = asked
+    assert run == "run" and algorithm == "lanewright:drivinglines" and "ROAD_EDGES" in values
 
 
 def test_the_window_goes_on_in_the_map_that_is_made_again_before_the_results_viewer(window, monkeypatch):  # noqa: F811

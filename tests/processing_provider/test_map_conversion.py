@@ -4,6 +4,7 @@ import made_lanes
 import processing
 import pytest
 from lanewright.library.layer_files import write_layer
+from lanewright.products.export.sources import RoadMapSource
 from map_files import geometry, opendrive, road, written
 from osm_files import osm_text
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProcessingException, QgsVectorLayer
@@ -24,6 +25,19 @@ def test_a_map_with_a_light_is_converted_there_and_back_and_read_into_layers(pro
     with pytest.raises(QgsProcessingException, match="is Lanelet2 already"):
         processing.run("lanewright:converthdmap", {"INPUT": there["OUTPUT"], "OUTPUT": str(tmp_path / "again.osm")})
     assert not (tmp_path / "again.osm").exists()
+
+
+def test_who_goes_first_at_a_junction_is_a_field_of_the_lanes_and_stands_in_both_exports(provider, tmp_path):
+    lanes = made_lanes.crossing()
+    low, high, *_ = (str(name) for name, kind in zip(lanes.lane_id, lanes.type) if kind == "connector")
+    areas = RoadMapSource(lanes, attributes={low: {"yields_to": high}}).lane_areas()
+    write_layer(str(tmp_path / "lanes.gpkg"), "", areas, lambda: None)
+    for algorithm, ending, said in (("exportopendrive", "xodr", "<priority high="), ("exportlanelet2", "osm", 'v="right_of_way"')):
+        made = processing.run(f"lanewright:{algorithm}", {"LANES": str(tmp_path / "lanes.gpkg"), "OUTPUT": str(tmp_path / f"map.{ending}")})
+        assert (tmp_path / f"map.{ending}").read_text(encoding="utf-8").count(said) == 1 and made["FINDINGS"] == 0
+    for algorithm, ending in (("importopendrive", "xodr"), ("importlanelet2", "osm")):
+        read = processing.run(f"lanewright:{algorithm}", {"INPUT": str(tmp_path / f"map.{ending}"), "LANES": str(tmp_path / f"{ending}.gpkg")})
+        assert sum(bool(row["yields_to"]) for row in QgsVectorLayer(read["LANES"]).getFeatures()) == 1
 
 
 @pytest.mark.parametrize("given", ["OSM_FILE", "WAYS"])

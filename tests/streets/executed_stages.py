@@ -13,6 +13,7 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.in_step import items_of_phases
 from lanewright.core.execution.keep import Keep
 from lanewright.core.intensity import image as imaging
+from lanewright.core.intensity import scatter as scattering
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.markings import outliers
@@ -50,7 +51,8 @@ def found_by(sample, executor=None, work=None, progress=Progress()):
         patch.setattr(ground_grid, "SURFACE", replace(ground_grid.SURFACE, measured_windows=2))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, looked_windows=1))
         patch.setattr(imaging, "IMAGE", replace(imaging.IMAGE, tiles_per_task=1))
-        patch.setattr(extraction, "WINDOWS_PER_TASK", 1)
+        for module in (scattering, extraction):
+            patch.setattr(module, "WINDOWS_PER_TASK", 1)
         patch.setattr(phases, "TASK_POINTS", 300)
         patch.setattr(outliers, "TASK_WINDOWS", 1)
         patch.setattr(heights, "HEIGHT_POINTS", 1)

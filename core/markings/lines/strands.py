@@ -307,14 +307,14 @@ LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along:
 
 @dataclass
 class EdgesBeside:
-    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, outlines by station and offset, m."""
+    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, (V, 2) outlines by station and offset, m."""
 
     edges: list[tuple[np.ndarray, np.ndarray]]
-    areas: Sequence[shapely.Polygon] = ()
+    areas: Sequence[np.ndarray] = ()   # plain values: what a process is sent, and a run is known by, holds no shapes
 
     @cached_property
     def _inner(self):
-        return shapely.STRtree(shapely.buffer(np.array(self.areas, object), -SELECTION.max_bar_end_offset))
+        return shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, self.areas)), -SELECTION.max_bar_end_offset))
 
     def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
         """Whether an island or a hatched area lies between two places, (2,) m each."""
@@ -356,7 +356,16 @@ def _islands(curbs):
     """Outlines of the islands of CrossSections, whose sides share a number."""
     of_island = np.array(curbs.kinds, object)[curbs.d.spans.owner] == "island"
     number, station, d = (values[of_island & np.isfinite(curbs.d.values)] for values in (curbs.number.values, curbs.d.spans.station, curbs.d.values))
-    return [shapely.convex_hull(shapely.multipoints(np.c_[curbs.s[station], d][number == island])) for island in np.unique(number)]
+    return [_area_between(curbs.s[station[number == island]], d[number == island]) for island in np.unique(number)]
+
+
+def _area_between(s, d):
+    """(V, 2) outline of the area between the least and the greatest offset at each station, of (N,) places."""
+    stations, of = np.unique(s, return_inverse=True)
+    low, high = np.full(len(stations), np.inf), np.full(len(stations), -np.inf)
+    np.minimum.at(low, of, d)
+    np.maximum.at(high, of, d)
+    return np.r_[np.c_[stations, low], np.c_[stations, high][::-1]] if len(stations) > 1 else np.empty((0, 2))
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.

@@ -6,7 +6,7 @@ patches are removed before a threshold is applied.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,6 +87,33 @@ def _coarse_sums(values):
     for axis, size in enumerate(values.shape):
         corners = np.diff(corners.take(np.append(np.arange(0, size, RIMS.coarse_cells), size), axis=axis), axis=axis)
     return corners.astype(float, copy=False)
+
+
+def of_squares(values: np.ndarray, shares: Sequence[float], measures: Callable[..., Sequence[np.ndarray]]) -> list[np.ndarray]:
+    """Measures of asphalt about each cell, (rows, columns) float32 each, from quantiles of squares of 1 m; NaN where nothing is known.
+
+    A measure is the median of the squares around, and interpolated between the middles of squares.
+
+    values : (rows, columns), NaN where unknown; shares : of the quantiles; measures : of the quantiles, (squares along, squares across) each
+    """
+    side, reach = ASPHALT.local_square, ASPHALT.local_squares // 2
+    rows, columns = (-(-n // side) for n in values.shape)
+    padded = np.full((rows * side, columns * side), np.nan, np.float32)
+    padded[:values.shape[0], :values.shape[1]] = values
+    squares = np.sort(padded.reshape(rows, side, columns, side).transpose(0, 2, 1, 3).reshape(rows, columns, -1), axis=2)
+    count = np.isfinite(squares).sum(axis=2, keepdims=True)
+    quantiles = (np.take_along_axis(squares, (share * np.maximum(count - 1, 0)).astype(np.int64), 2)[..., 0] for share in shares)
+    positions = np.meshgrid(*(np.clip((np.arange(n) + 0.5) / side - 0.5, 0, m - 1) for n, m in zip(values.shape, (rows, columns))), indexing="ij")
+    result = []
+    for measure in measures(*quantiles):
+        known = np.where(count[..., 0] >= ASPHALT.min_local_cells, measure, np.nan)
+        around = np.lib.stride_tricks.sliding_window_view(np.pad(known, reach, constant_values=np.nan), (2 * reach + 1, 2 * reach + 1))
+        ordered = np.sort(around.reshape(rows, columns, -1), axis=2)
+        near = np.isfinite(ordered).sum(axis=2, keepdims=True)
+        middle = np.take_along_axis(ordered, np.maximum(near - 1, 0) // 2, 2)[..., 0]
+        usual = np.median(known[np.isfinite(known)]) if near.any() else np.nan
+        result.append(ndimage.map_coordinates(np.where(near[..., 0] > 0, middle, usual), positions, order=1).astype(np.float32))
+    return result
 
 
 def patch_level(z: np.ndarray, bright: float) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from dataclasses import replace
 from os import PathLike
 
@@ -17,7 +16,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .settings import MarkingSettings, PaintMethod
-from .windows import Burn, PaintSource, burn_points, marking_mask, paint_of_window
+from .windows import PaintSource, paint_of_window, write_mask
 
 
 def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings = MarkingSettings(),
@@ -34,16 +33,14 @@ def extract_markings(road_points: RoadPoints, image: IntensityImage, frame: Road
 
     Raises RoadExtractionError if the mask cannot be written.
     """
-    saturated = "" if road_points.has_corrected else saturation_of(road_points).warning
-    if saturated:
+    if not road_points.has_corrected and (saturated := saturation_of(road_points).warning):
         progress.warn(saturated)
-    with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
-        if settings.method is None:
-            paint = _extract_from_image(road_points, image, frame, settings, progress, burn, scatter)
-        else:
-            paint = _extract_from_points(road_points, settings.method, progress)
-            if burn is not None:
-                burn_points(burn, paint, image, frame)
+    if settings.method is None:
+        paint = _extract_from_image(road_points, image, frame, settings, progress, scatter)
+    else:
+        paint = _extract_from_points(road_points, settings.method, progress)
+    if mask_path:
+        write_mask(mask_path, paint, image, frame)
     progress.info(f"Paint: {len(paint):,} of {len(road_points):,} road points lie on it.")
     return paint
 
@@ -59,12 +56,11 @@ def _extract_from_points(road_points: RoadPoints, method: PaintMethod, progress:
 
 
 def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
-                        burn: Burn | None, scatter: ScannerScatter | None) -> RoadPoints:
+                        scatter: ScannerScatter | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
     executor: Executor = road_points.executor if isinstance(image, TiledImage) else THREADS
     source = PaintSource(road_points, image, frame, executor.folder)
     paint = replace(RoadPoints.empty_like(road_points), store=source.paint, has_spacing=True)
-    items = [(road, window) for road in road_points.roads() for window in windows_of(road_points, road)]
     if scatter is None:
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     length = WINDOW_UNITS * COORDINATE_SCALE
@@ -73,10 +69,8 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
         progress.warn(f"Along {photographed:.0f} m neighbouring points are as alike as in photographs. Paint is compared with the ground around each "
                       "spot there, and edges of shadows may be taken for it: look at these markings, or give the scanner's own intensity.")
     ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
-    phase = Phase(paint_of_window, source, (settings, ways, burn is not None), lambda item: place_of(road_points, (*item, item[1] + 1)),
+    phase = Phase(paint_of_window, source, (settings, ways), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
-    for index, x, y in executor.run(phase, items, progress.part(0.1, 1.0)):
+    for index in executor.run(phase, windows_of(road_points), progress.part(0.1, 1.0)):
         paint.store.adopt(index, executor.folder)
-        if burn is not None:
-            burn(x, y)
     return paint

@@ -12,14 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from ...intensity.asphalt_model import INNER_QUANTILE, INNER_SIGMAS
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ..objects.repeating import likely_rows
 from ..objects.shape import measure
 from ..road_grid import CELL_SIZE, CELL_UNITS
 from ..weights import NOISY
+from .asphalt_level import of_squares
 
-SCATTER_SIGMAS = 0.5244   # derived: standard deviations of a normal distribution that it lies below the median
 BRIGHTNESS_STEPS = 64   # derived: brightness is summed in whole 64ths: their sums are exact in any order
 
 
@@ -72,27 +73,9 @@ def _gaussian_mean(count, total, sigma):
 def _local_scatter(contrast: np.ndarray) -> np.ndarray:
     """Standard deviation of asphalt's contrast in the metres around each cell, float32; NaN where nothing is known.
 
-    It is estimated from values a little below the median: paint lies above them, rails, covers and seams below.
+    It is estimated from values a little below the median: paint lies above them, dark rails, covers and seams below.
     """
-    rows, columns = (-(-n // NOISY.scatter_block) for n in contrast.shape)
-    padded = np.full((rows * NOISY.scatter_block, columns * NOISY.scatter_block), np.nan, np.float32)
-    padded[:contrast.shape[0], :contrast.shape[1]] = contrast
-    blocks = np.sort(padded.reshape(rows, NOISY.scatter_block, columns, NOISY.scatter_block).transpose(0, 2, 1, 3).reshape(rows, columns, -1), axis=2)
-    count = np.isfinite(blocks).sum(axis=2, keepdims=True)
-    low, median = (np.take_along_axis(blocks, (share * np.maximum(count - 1, 0)).astype(np.int64), 2)[..., 0]
-                   for share in (NOISY.scatter_quantile, 0.5))
-    spread = np.where(count[..., 0] >= NOISY.min_block_cells, (median - low) / SCATTER_SIGMAS, np.nan)
-    finite = spread[np.isfinite(spread)]
-    if not len(finite):
-        return np.full(contrast.shape, np.nan, np.float32)
-    reach = NOISY.scatter_blocks // 2
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (NOISY.scatter_blocks, NOISY.scatter_blocks))
-    ordered = np.sort(around.reshape(rows, columns, -1), axis=2)
-    count = np.isfinite(ordered).sum(axis=2, keepdims=True)
-    middle = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, 2)[..., 0]
-    middle = np.where(count[..., 0] > 0, middle, np.median(finite))
-    positions = [np.clip((np.arange(n) + 0.5) / NOISY.scatter_block - 0.5, 0, m - 1) for n, m in zip(contrast.shape, middle.shape)]
-    return ndimage.map_coordinates(middle, np.meshgrid(*positions, indexing="ij"), order=1).astype(np.float32)
+    return of_squares(contrast, (INNER_QUANTILE, 0.5), lambda low, median: [(median - low) / INNER_SIGMAS])[0]
 
 
 @dataclass(frozen=True)

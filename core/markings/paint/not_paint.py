@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from ...curves.robust import median
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, fill_gaps
-from ..weights import PHOTOGRAPHS, RIMS, TRACKS
+from ..weights import RIMS, TRACKS
 from .settings import MarkingSettings
 
 
@@ -35,18 +34,16 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
 
 
-def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings, above: np.ndarray | None = None,
-                 rim: np.ndarray | None = None) -> np.ndarray:
+def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings,
+                 are_paint: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
     """(rows, columns) bool, the bright cells of a mask in pieces that are too large and too bright to be noise, and what wear left between two.
 
     A piece is what hangs together once gaps of `close` along the road are closed, and where points lie far apart those that no point was near. The
-    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck. It is brighter
-    than what lies on either side of it: the rim of a repair is so on one side alone, or fades out into the repair.
+    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck.
 
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
-    above : (rows, columns) float32 spreads above the asphalt of the bin, local levels not taken off; None where the sides are not compared
-    rim : (rows, columns) float32 m to the rim of the road, by which pieces in photographs are told from other bright ground; None for a scanner's
+    are_paint : gives (pieces,) bool by (rows, columns) int their numbers from 1 on, 0 elsewhere; None where nothing else tells what is paint
     """
     joined = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
     for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
@@ -54,60 +51,46 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: Ma
     count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
     sums = np.bincount(labels[mask], np.minimum(z[mask], settings.highest), count)
     large = sums >= settings.evidence
-    if rim is not None and above is not None and large.any():
-        numbers = np.cumsum(large) * large
-        large[large] = _paint_of_photographs(z, mask, numbers[labels], rim, above, settings.separation)
-    elif above is not None and large.any():
-        large &= ~_one_sided(above, np.where(large[labels], labels, 0), mask & seen, count, settings.lowest)
+    if are_paint is not None and large.any():
+        large[large] = are_paint((np.cumsum(large) * large)[labels])
     clear = np.zeros(mask.shape, bool)
     clear[mask] = large[labels[mask]]
     return mask & (clear | _between(clear, mask)) if clear.any() else clear
 
 
-def _one_sided(above, labels, bright, count, least):
-    """(count,) bool, whether a piece is hardly brighter than the brighter side of what lies beside it: by less than `least` spreads, and than much
-    of its contrast with the darker side."""
-    low, high, middle = _beside(above, labels, bright, count, RIMS.beside)
+def two_sided(above: np.ndarray, bright: np.ndarray, least: float, labels: np.ndarray) -> np.ndarray:
+    """(pieces,) bool, whether pieces are brighter than what lies on either side of them; as of `clear_pieces`.
+
+    The rim of a repair is so on one side alone, or fades out into the repair: it is hardly brighter than its brighter side, by less than `least`
+    spreads, and than much of its contrast with the darker side.
+
+    above : (rows, columns) float32 spreads above the asphalt of the bin, local levels not taken off; bright : (rows, columns) bool cells of pieces
+    """
+    low, high, middle = beside_pieces(above, labels, bright, RIMS.beside)
     with np.errstate(invalid="ignore"):
-        return (middle - high < least) & (middle - high < RIMS.least_share * (middle - low))
+        return ~((middle - high < least) & (middle - high < RIMS.least_share * (middle - low)))
 
 
-def _beside(values, labels, bright, count, reach):
-    """(count,) each of pieces: values on the darker and on the brighter side of what lies beside them, up to a reach less another in cells, and
+def beside_pieces(values: np.ndarray, labels: np.ndarray, bright: np.ndarray, reach: tuple[int, int]) -> np.ndarray:
+    """(3, pieces) of pieces: values on the darker and on the brighter side of what lies beside them, up to a reach less another in cells, and
     in their own bright cells."""
     known = np.isfinite(values)
     weight = cv2.blur(known.astype(np.float32), (3, 3))
     level = cv2.blur(np.where(known, values, np.float32(0)), (3, 3)) / np.maximum(weight, np.float32(1e-6))
     far, near = (cv2.dilate(labels.astype(np.float32), np.ones((2 * cells + 1, 2 * cells + 1), np.uint8)) for cells in reach)
     beside = np.where(known & (near == 0), far, 0).astype(np.int32)
-    return *(_of_pieces(level, beside, count, share) for share in RIMS.sides), _of_pieces(level, np.where(bright, labels, 0), count, 0.5)
+    inside, count = np.where(bright, labels, 0), int(labels.max()) + 1
+    return np.array([*_of_pieces(level, beside, count, RIMS.sides), *_of_pieces(level, inside, count, (0.5,))])[:, 1:]
 
 
-def _paint_of_photographs(z: np.ndarray, mask: np.ndarray, labels: np.ndarray, rim: np.ndarray, above: np.ndarray, separation: float) -> np.ndarray:
-    """(pieces,) bool, whether pieces are paint and not other bright ground, by a logistic regression: that fades out, is broad or lies at the rim.
-
-    z, mask, rim, above : as of `clear_pieces`; labels : (rows, columns) number of the piece of each cell from 1 on
-    """
-    count = int(labels.max()) + 1
-    numbers = np.arange(1, count)
-    (_, left, usual), (darker, brighter, middle) = (np.nan_to_num([of[1:] for of in _beside(values, labels, mask, count, PHOTOGRAPHS.beside)])
-                                                    for values in (z, above))
-    thickness = 2 * CELL_SIZE * ndimage.maximum(cv2.distanceTransform((labels > 0).astype(np.uint8), cv2.DIST_L2, 5), labels, numbers)
-    length = np.array([np.hypot(*(side.stop - side.start for side in box)) for box in ndimage.find_objects(labels)]) * CELL_SIZE
-    usual = np.maximum(usual, 1.0)
-    features = (np.ones(count - 1), np.log(usual / separation), np.clip(left / usual, 0.0, PHOTOGRAPHS.most_fading),
-                np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0), np.minimum(thickness, PHOTOGRAPHS.most_breadth),
-                np.log(length / thickness), np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach))
-    return np.transpose(features) @ PHOTOGRAPHS.nats > 0.0
-
-
-def _of_pieces(values, labels, count, share):
-    """(count,) of each label the value that a share of its cells do not exceed; NaN where it has no cell."""
+def _of_pieces(values, labels, count, shares):
+    """[(count,) of each label the value that a share of its cells do not exceed; NaN where it has no cell] of some shares."""
     cells = np.flatnonzero(labels)
     of, values = labels.ravel()[cells], values.ravel()[cells]
     number = np.bincount(of, minlength=count)
-    place = np.cumsum(number) - number + (share * np.maximum(number - 1, 0)).astype(np.int64)
-    return np.where(number > 0, np.append(values[np.lexsort((values, of))], np.nan)[np.minimum(place, len(cells))], np.nan)
+    ordered, first = np.append(values[np.lexsort((values, of))], np.nan), np.cumsum(number) - number
+    places = (first + (share * np.maximum(number - 1, 0)).astype(np.int64) for share in shares)
+    return [np.where(number > 0, ordered[np.minimum(place, len(cells))], np.nan) for place in places]
 
 
 def _unseen_gaps(mask, seen, limit, axis):

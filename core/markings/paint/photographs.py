@@ -1,62 +1,98 @@
 """Paint by the brightness of photographs, whose asphalt is as bright as shadows, seams of images and the sun leave it from metre to metre.
 
-The level is that of the ground around a spot and not of a strip of road, and so is the scatter. Our own estimate.
+The level is that of the ground around a spot and not of a strip of road, and so is the scatter. Of what is brighter, a fleck of sun is as bright as
+sunlit asphalt; paint is brighter than that, or lies above the shade by as much as elsewhere above the sun. Our own estimate.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from scipy import ndimage
 
 from ...curves.robust import median
 from ...lazy import cv2
-from ..weights import PHOTOGRAPHS
-from .not_paint import RimBands, gutter_cells
+from ..weights import PHOTOGRAPHS, RIMS
+from .asphalt_level import of_squares, otsu
+from .not_paint import RimBands, beside_pieces, gutter_cells
 from .settings import MarkingSettings
 
 
-def bright_spots(brightness: np.ndarray, rims: Sequence[RimBands], settings: MarkingSettings) -> tuple[np.ndarray, ...]:
-    """Spreads above the ground around each cell, whether that makes it bright, brightness in the same spreads, and that of points of paint there.
+def bright_spots(brightness: np.ndarray, rims: Sequence[RimBands],
+                 settings: MarkingSettings) -> tuple[np.ndarray, np.ndarray, Callable[..., np.ndarray], np.ndarray]:
+    """Spreads above the ground around each cell, whether that makes it bright, what tells pieces of paint as in `clear_pieces`, and the brightness
+    that points of paint have at least.
 
     All (rows, columns). `brightness` : (rows, columns) float32, NaN where nothing is known; `rims` : of the scanned road and of its edges.
     """
-    contrast, spread = _above_ground(brightness)
-    z = contrast / spread
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (PHOTOGRAPHS.level_cells, PHOTOGRAPHS.level_cells))
+    # takes off what is narrower than any painted area; the edges of shadows and patches stay where they are
+    ground = cv2.morphologyEx(cv2.medianBlur(_filled(brightness), PHOTOGRAPHS.median_cells), cv2.MORPH_OPEN, disc)
+    ground, spread = _asphalt(brightness, ground)
+    z = (brightness - ground) / spread
     # half of the brightest three cells square nearby is where paint ends; worn paint is darker than what is left of it nearby
     brightest = cv2.dilate(cv2.blur(np.nan_to_num(z), (3, 3)), np.ones((PHOTOGRAPHS.half_maximum_cells,) * 2, np.uint8))
     threshold = np.clip(brightest / 2, settings.lowest, settings.highest)
-    gutter = np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
-    return z, (z > threshold) & ~gutter, brightness / spread, brightness - contrast + (threshold - 0.5) * spread
+    bright = (z > threshold) & ~np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
+    light = _light(*(np.log(np.maximum(of, np.float32(1))) for of in (brightness, ground)), bright)
+    return z, bright, partial(_are_paint, z, brightness / spread, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
 
 
-def _above_ground(brightness):
-    """Brightness above the asphalt around each cell, and the standard deviation of asphalt there, (rows, columns) float32 each.
+def _light(brightness, ground, bright):
+    """(rows, columns) from -1 for asphalt in the sun to 1 for paint, be it in the sun or in the shade.
 
-    A morphological opening takes off what is narrower than any painted area; the edges of shadows and patches stay where they are. The scatter is
-    taken from quantiles below the median, since paint lies above it.
+    Squares of distances from these, in the usual step from asphalt to paint: light adds to logarithms of brightness, on paint and asphalt alike.
+    Where asphalt has two levels, the brighter one is that of the sun, taken from the metres around.
+
+    brightness, ground : (rows, columns) float32 logarithms; bright : (rows, columns) bool
     """
-    even = cv2.medianBlur(_filled(brightness), PHOTOGRAPHS.median_cells)
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (PHOTOGRAPHS.level_cells, PHOTOGRAPHS.level_cells))
-    contrast = brightness - cv2.morphologyEx(even, cv2.MORPH_OPEN, disc)
-    side = PHOTOGRAPHS.square_cells
-    rows, columns = (-(-n // side) for n in contrast.shape)
-    padded = np.pad(contrast, [(0, m * side - n) for m, n in zip((rows, columns), contrast.shape)], constant_values=np.nan)
-    squares = padded.reshape(rows, side, columns, side).swapaxes(1, 2).reshape(rows * columns, side * side)
-    enough = np.isfinite(squares).sum(axis=1) >= PHOTOGRAPHS.min_square_cells
-    if not enough.any():
-        return contrast, np.full(contrast.shape, np.nan, np.float32)
-    shares, sigmas = np.transpose(PHOTOGRAPHS.quantiles)
-    (low, dim), (high, usual) = np.nanquantile(squares[enough], shares, axis=1)[[[0, 2], [1, 3]]]
-    spreads = (np.stack([high, usual]) - [low, dim]) / (sigmas[::2] - sigmas[1::2])[:, None]
-    middles = [high, usual] + sigmas[1::2, None] * spreads
-    painted = spreads[1] > PHOTOGRAPHS.painted_square * spreads[0]
-    maps = np.full((2, rows * columns), np.nan, np.float32)
-    maps[:, enough] = np.where(painted, (middles[0], spreads[0]), (middles[1], spreads[1]))
-    middle, spread = (cv2.resize(ndimage.median_filter(_filled(of.reshape(rows, columns)), PHOTOGRAPHS.squares_around, mode="nearest"),
-                                 padded.shape[::-1])[:contrast.shape[0], :contrast.shape[1]] for of in maps)
-    return contrast - middle, np.maximum(spread, np.float32(PHOTOGRAPHS.least_scatter * median(brightness[np.isfinite(brightness)])))
+    known = np.isfinite(brightness)
+    threshold, _, usual, _ = otsu(ground[known])
+    squares, sunny = (of[::RIMS.coarse_cells, ::RIMS.coarse_cells].astype(np.float32) for of in (ground, known & (ground > threshold)))
+    weight, near = (cv2.GaussianBlur(of, (0, 0), PHOTOGRAPHS.sun_squares) for of in (sunny, sunny * (squares - np.float32(usual))))
+    sun = np.maximum(cv2.resize(np.float32(usual) + near / np.maximum(weight, np.float32(1e-3)), ground.shape[::-1]), ground)
+    above_sun = brightness - sun
+    sure = above_sun[bright & (above_sun > PHOTOGRAPHS.paint_step / 2)]
+    step = (PHOTOGRAPHS.paint_step * PHOTOGRAPHS.usual_cells + sure.sum()) / (PHOTOGRAPHS.usual_cells + len(sure))
+    in_sun, in_shade = np.minimum(above_sun / step - 1, 0) ** 2, ((brightness - ground) / step - 1) ** 2
+    return np.clip((above_sun / step) ** 2 - np.minimum(in_sun, in_shade), -1, 1)
+
+
+def _are_paint(z, above, light, bright, rim, labels):
+    """(pieces,) bool, whether pieces are paint, by a logistic regression, and not sunlit, one-sided, round, or at the rim.
+
+    labels : as in `clear_pieces`; rim : (rows, columns) m to it; above : (rows, columns) brightness in spreads; the others as of `bright_spots`
+    """
+    numbers = np.arange(1, int(labels.max()) + 1)
+    (_, left, usual), (darker, brighter, middle) = (np.nan_to_num(beside_pieces(values, labels, bright, PHOTOGRAPHS.beside)) for values in (z, above))
+    cells = np.array(np.nonzero(labels))
+    of = labels[tuple(cells)]
+    places = [place - ndimage.mean(place, of, numbers)[of - 1] for place in cells]
+    moments = np.array([[ndimage.mean(a * b, of, numbers) for a in places] for b in places])
+    # a single cell is as broad as long
+    across, along = np.linalg.eigvalsh(moments.transpose(2, 0, 1)).T + 1 / 12
+    features = (np.clip(left / np.maximum(usual, 1.0), 0.0, PHOTOGRAPHS.most_fading),
+                np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0), np.log(along / across) / 2,
+                np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach),
+                ndimage.mean(np.nan_to_num(light), np.where(bright, labels, 0), numbers))
+    return np.transpose(features) @ PHOTOGRAPHS.nats > 0.0
+
+
+def _asphalt(brightness, ground):
+    """Brightness of the asphalt around each cell, and the standard deviation of asphalt there, (rows, columns) float32 each.
+
+    The scatter is taken from quantiles below the median, since paint lies above it. `ground` : (rows, columns) the darkest of the ground around.
+    """
+    shares, sigmas = zip(*PHOTOGRAPHS.quantiles)
+
+    def measures(low, high, dim, usual):
+        dark, even = (high - low) / (sigmas[0] - sigmas[1]), (usual - dim) / (sigmas[2] - sigmas[3])
+        return np.where(even > PHOTOGRAPHS.painted_square * dark, (high + sigmas[1] * dark, dark), (usual + sigmas[3] * even, even))
+
+    middle, spread = of_squares(brightness - ground, shares, measures)
+    return ground + middle, np.maximum(spread, np.float32(PHOTOGRAPHS.least_scatter * median(brightness[np.isfinite(brightness)])))
 
 
 def _filled(values):

@@ -6,8 +6,7 @@ straight.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,12 @@ import numpy as np
 from ...curves.robust import median
 from ...execution.phase import Recipe
 from ...intensity.image import state_about
-from ...intensity.scatter import WINDOW_UNITS
+from ...intensity.scatter import WINDOW_UNITS, windows_of
 from ...io.geotiff import IntensityImage, new_geotiff
 from ...survey.frame.road import Road
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
+from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore, StoreIndex
 from ..objects.shape import painted_cells
@@ -30,7 +29,7 @@ from ..road_grid import CELL_SIZE, CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid,
 from ..weights import ASPHALT, SHAPES
 from .asphalt_level import asphalt_bins, asphalt_profile, bin_edges, dark_cells, flatten, threshold_profile
 from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
-from .not_paint import RimBands, clear_pieces, edge_distance, raised_cells, rim_distance, track_spacing
+from .not_paint import RimBands, clear_pieces, edge_distance, raised_cells, rim_distance, track_spacing, two_sided
 from .photographs import bright_spots
 from .settings import MarkingSettings
 
@@ -39,7 +38,6 @@ WINDOW_HALO = 100   # derived: cells: 4 m around a window that are read too, for
 MAX_HEIGHTS = 30_000   # derived: points of a piece of 5 m whose heights are compared; of twice as many an evenly spread share
 MAX_OFFSET_POINTS = 300_000   # derived: points of a window whose offsets are kept; of twice as many an evenly spread share
 
-Paint = tuple[Columns, np.ndarray, np.ndarray]   # points on paint; local x, y of the mask's pixels, if it is asked for
 
 
 def points_of_rows(road_points: RoadPoints, road: int, first: int, last: int) -> Points:
@@ -71,19 +69,19 @@ class PaintSource:
         return state_about(self.image, self.frame, road, *(row * CELL_UNITS * COORDINATE_SCALE for row in rows))
 
 
-def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings, ways: dict[int, tuple[list[int], list[int]]],
-                    masked: bool) -> tuple[StoreIndex, np.ndarray, np.ndarray]:
-    """The phase that extracts paint; returns where its points lie in a part of the store of paint, and x, y of the mask.
+def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings,
+                    ways: dict[int, tuple[list[int], list[int]]]) -> StoreIndex:
+    """The phase that extracts paint; returns where its points lie in a part of the store of paint.
 
     `item` : number of a road and of a window; `ways` : {road: windows with noisy points, in which paint is searched for in averages, and those with
-    brightness of photographs}; `masked` : whether the mask's pixels are asked for.
+    brightness of photographs}.
     """
     road, window = item
     noisy, photographed = (window in some for some in ways.get(road, ((), ())))
-    records, x, y = _Window(source, road, window).extract(settings, noisy, photographed, masked)
+    records = _Window(source, road, window).extract(settings, noisy, photographed)
     with source.paint.part() as part:
         part.append(road, records)
-    return part.index(), x, y
+    return part.index()
 
 
 class _Window:
@@ -97,18 +95,16 @@ class _Window:
     def _points(self, first, last):
         return points_of_rows(self.source.road_points, self.road, first, last)
 
-    def extract(self, settings: MarkingSettings, noisy: bool, photographed: bool, masked: bool) -> Paint:
+    def extract(self, settings: MarkingSettings, noisy: bool, photographed: bool) -> Columns:
         """Paint of the window itself."""
-        nothing = join_columns([], self.source.road_points.store.dtype), np.empty(0), np.empty(0)
-        if not len(self._points(self.begin, self.end)):
-            return nothing
         step = max(len(self._points(self.first, self.last)) // MAX_OFFSET_POINTS, 1)
         parts = cells_of_road(self.source.road_points, self.road, self.first, self.last, step)
+        parts_within = [part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end]
         cells = RoadCells.of(parts, self.first, self.last)
-        if cells is None:
-            return nothing
+        if cells is None or not parts_within:
+            return Columns.concatenate([], self.source.road_points.store.dtype)
         mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings, photographed)
-        return self._paint_in([part for part in parts if self.begin <= part.grid.first and part.grid.last <= self.end], cells, mask, least, masked)
+        return self._paint_in(parts_within, cells, mask, least)
 
     def _from_image(self, parts, cells, settings, photographed):
         """Cells of paint by thresholds on the image, and the brightness that points on them have at least."""
@@ -119,10 +115,10 @@ class _Window:
         rims = [RimBands.of(distance, scanned) for distance in (from_rim, edge_distance(cells.half_width, cells.grid.offsets()))]
         with np.errstate(invalid="ignore"):
             if photographed:
-                z, bright, above, least = bright_spots(brightness, rims, settings)
+                z, bright, are_paint, least = bright_spots(brightness, rims, settings)
             else:
-                z, bright, above, least = self._brighter_than_strips(parts, cells.grid.offsets(), brightness, from_rim, rims, settings)
-            mask = clear_pieces(z, bright, scanned, settings, above, from_rim if photographed else None)
+                z, bright, are_paint, least = self._brighter_than_strips(parts, cells.grid.offsets(), brightness, from_rim, rims, settings)
+            mask = clear_pieces(z, bright, scanned, settings, are_paint)
         return mask & ~raised_cells([self._heights(part, cells.grid) for part in parts], mask), least
 
     def _brighter_than_strips(self, parts, offsets, brightness, from_rim, rims, settings):
@@ -145,7 +141,8 @@ class _Window:
         scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        return z / scale, (z > threshold * scale) & ~gutter, (brightness - asphalt) / (spread * scale), least
+        bright = (z > threshold * scale) & ~gutter
+        return z / scale, bright, partial(two_sided, (brightness - asphalt) / (spread * scale), bright, settings.lowest), least
 
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
         """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
@@ -160,8 +157,8 @@ class _Window:
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.source.frame))
         return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.lowest), None
 
-    def _paint_in(self, parts: list[PieceOfRoad], cells: RoadCells, mask: np.ndarray, least: np.ndarray | None, masked: bool) -> Paint:
-        """Points of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels; arrays as the grid."""
+    def _paint_in(self, parts: list[PieceOfRoad], cells: RoadCells, mask: np.ndarray, least: np.ndarray | None) -> Columns:
+        """Points of the window's own parts in painted cells, brighter than `least` of their cell; arrays as the grid."""
         grid, rows, numbers, before = cells.grid, [], [], 0
         for part in parts:
             row, cell = part.points_on(mask[part.within(grid)])
@@ -169,89 +166,57 @@ class _Window:
             numbers.append(part.numbers_in(grid, cell))
             before += len(part.cell)
         # the columns of all parts are read together
-        records = take_rows(self._points(parts[0].grid.first, parts[-1].grid.last).records, np.concatenate(rows))
+        records = self._points(parts[0].grid.first, parts[-1].grid.last).records[np.concatenate(rows)]
         cell = np.concatenate(numbers)
         if least is not None:
             bright = np.flatnonzero(Points(records).value > least.ravel().take(cell))
-            records, cell = take_rows(records, bright), cell.take(bright)
+            records, cell = records[bright], cell.take(bright)
         spacing = np.rint(track_spacing(cells.occupied).ravel().take(cell) * 1e3).astype(np.uint16)
-        records = records.with_columns(spacing=spacing)
-        if not masked:
-            return records, np.empty(0), np.empty(0)
-        with_points = np.zeros(grid.shape, bool)
-        with_points.ravel()[cell] = True
-        # the image spreads a point over neighbouring cells: a cell whose own points are dark is no marking
-        for part in parts:
-            box = part.within(grid)
-            mask[box][part.occupied] = with_points[box][part.occupied]
-        inner = mask[WINDOW_HALO:WINDOW_HALO + THRESHOLD_WINDOW]
-        frame = self.source.frame
-        return records, *_painted_pixels(inner, (grid.first + WINDOW_HALO, grid.low), self.source.image, frame.origin, frame.road(self.road))
+        return records.with_columns(spacing=spacing)
 
 
 # The mask of markings as a raster, in the pixels of the intensity image.
 
 BURN_BLOCK = 2048   # derived: px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
-BURN_WINDOW = 500   # derived: cells: 20 m of station burnt at a time
-
-Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 
 
-@contextmanager
-def marking_mask(path: str | PathLike, image: IntensityImage, origin: np.ndarray) -> Iterator[Burn]:
-    """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
-
-    `path` : of the GeoTIFF, which appears when the block is left without an error; it has the pixels of `image`. `origin` : of local coordinates, m.
-    """
+def write_mask(path: str | PathLike, points: RoadPoints, image: IntensityImage, frame: RoadFrame) -> None:
+    """Write a byte GeoTIFF in the pixels of an image, 1 where points on paint lie, gaps between scan lines closed, and no data elsewhere."""
+    halo = int(np.ceil(SHAPES.close_along / CELL_SIZE)) + 1
     with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
-
-        def burn(x, y):
-            column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
-            inside = (column >= 0) & (row >= 0) & (column < image.width) & (row < image.height)
-            column, row = column[inside], row[inside]
+        for number, window in windows_of(points):
+            first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW
+            records = points_of_rows(points, number, first - halo, last + halo).records
+            if not len(records):
+                continue
+            cells, corner = painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE)
+            top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
+            column, row = _painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(number))
             block = row // BURN_BLOCK * (image.width // BURN_BLOCK + 1) + column // BURN_BLOCK
-            for number in np.unique(block):
-                c, r = column[block == number], row[block == number]
+            for part in np.unique(block):
+                c, r = column[block == part], row[block == part]
                 c0, r0, width, height = int(c.min()), int(r.min()), int(np.ptp(c)) + 1, int(np.ptp(r)) + 1
                 pixels = mask.read(c0, r0, width, height)
                 pixels[r - r0, c - c0] = 1
                 mask.write(c0, r0, pixels)
 
-        yield burn
-
 
 def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityImage, origin: np.ndarray,
                     road: Road) -> tuple[np.ndarray, np.ndarray]:
-    """Local x, y (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
+    """Columns and rows (M,) of the image's pixels whose centres lie in painted cells of a road, of which the first begins at `first` * 4 cm."""
     row, column = np.nonzero(cells)
     # four places a cell: pixels may be smaller than cells and rotated against them
     quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
-    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(*road.to_map(s, d), origin))
+    pixels = np.floor(image.pixel_of(*road.to_map(s, d), origin)).astype(np.int64)
+    inside = ((pixels >= 0) & (pixels < [[image.width], [image.height]])).all(axis=0)
     # each pixel once, by one of the places in it
-    _, nearest = np.unique(row * (image.width + 1) + column, return_index=True)
+    pixels, nearest = np.unique(pixels[:, inside], axis=1, return_index=True)
     left, size, _, top, _, _ = image.geotransform
-    x, y = (left - origin[0]) + (column[nearest] + 0.5) * size, (top - origin[1]) - (row[nearest] + 0.5) * size
-    s, d = road.locate(x, y, s[nearest], np.inf)
-    finite = np.isfinite(s)
-    x, y, s, d = x[finite], y[finite], s[finite], d[finite]
-    row, column = (np.floor(c / CELL_SIZE).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
-    inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
-    inside[inside] = cells[row[inside], column[inside]]
-    return x[inside], y[inside]
-
-
-def burn_points(burn: Burn, points: RoadPoints, image: IntensityImage, frame: RoadFrame) -> None:
-    """Burn the cells that points on paint lie in, gaps between scan lines closed; `burn` is given by `marking_mask`."""
-    halo = int(np.ceil(SHAPES.close_along / CELL_SIZE)) + 1
-    for road in points.roads():
-        start, end = points.store.span(road)
-        for window in range(int(np.floor(start / CELL_SIZE / BURN_WINDOW)), int(np.ceil(end / CELL_SIZE / BURN_WINDOW))):
-            first, last = window * BURN_WINDOW, (window + 1) * BURN_WINDOW
-            records = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
-            if not len(records):
-                continue
-            cells, corner = painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE)
-            top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
-            burn(*_painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))
+    x, y = (left - origin[0]) + (pixels[0] + 0.5) * size, (top - origin[1]) - (pixels[1] + 0.5) * size
+    places = np.array(road.locate(x, y, s[inside][nearest], np.inf))
+    row, column = np.floor(np.nan_to_num(places, nan=-np.inf) / CELL_SIZE) - np.array(first)[:, None]
+    painted = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
+    painted[painted] = cells[row[painted].astype(int), column[painted].astype(int)]
+    return pixels[0, painted], pixels[1, painted]

@@ -370,13 +370,9 @@ class RunningSums:
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.window(1, first, last) / self.window(0, first, last)
 
-    def line(self, first: int, last: int) -> SideLines:
-        """Line through the cells from `first` to `last` beside every cell."""
-        return SideLines(self, first, last)
-
 
 class SideLines:
-    """Lines through the cells beside every cell: height at the cell (`level`), slope, number of cells (`n`), each (P, C)."""
+    """Lines through the cells from `first` to `last` beside every cell: height at the cell (`level`), slope, number of cells (`n`), each (P, C)."""
 
     def __init__(self, sums: RunningSums, first: int, last: int):
         self.n, sz, su, suu, suz = (sums.window(k, first, last) for k in (0, 1, 3, 4, 5))

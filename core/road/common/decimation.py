@@ -17,7 +17,8 @@ from ...common.arrays import decimate_cells
 from ...execution.phase import Executor, Recipe
 from ...survey.open_survey import Survey
 from ...survey.store.array_file import ArrayFile
-from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
+from ...survey.store.columns import Columns
+from ...survey.store.records import COORDINATE_SCALE, Points
 from ..weights import CURBS
 
 LEVEL_CELL_LIMITS = CURBS.points_per_level_cell, CURBS.points_per_level_cell_in_plan
@@ -79,7 +80,7 @@ class PointDecimation:
             # few points are worked on together with the next ones
             waiting.append(points)
             if first == begins[-1] or sum(map(len, waiting)) >= CURBS.joined_points:
-                joined = waiting[0] if len(waiting) == 1 else Points(join_columns([part.records for part in waiting], points.records.dtype))
+                joined = waiting[0] if len(waiting) == 1 else Points(Columns.concatenate([part.records for part in waiting], points.records.dtype))
                 waiting = []
                 yield from _blocks_of_profiles(joined, start * self.width, self.width)
 

@@ -93,19 +93,14 @@ class _Average:
     good: bool   # is it a step?
 
 
-def led_on(ground: GroundRaster, ends: FollowedEnds) -> list[PlanSteps]:
-    """The faint curb that continues from each end.
+def led_on(ground: GroundRaster, end: FollowedEnds) -> PlanSteps:
+    """The faint curb that continues from one end, with RETURN.line_direction_length of sure curb behind it.
 
     ground : GroundRaster, averaged
-    ends : K FollowedEnds, RETURN.line_direction_length of sure curb behind each
 
-    Returns a list of K PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages;
-    empty ones where nothing continues
+    Returns PlanSteps, RETURN.led_step apart, in order out of the line, about half RETURN.led_length less far than the averages; none where
+    nothing continues
     """
-    return [_led_on(ground, ends[k:k + 1]) for k in range(len(ends))]
-
-
-def _led_on(ground, end):
     x, y, h, tx, ty = (float(v[0]) for v in (end.x, end.y, end.h, end.tx, end.ty))
     near = np.flatnonzero((np.hypot(ground.x - x, ground.y - y) <= RETURN.max_led_length + RETURN.led_length)
                           & (np.abs(ground.h - h) <= RETURN.max_layer_height))
@@ -202,7 +197,7 @@ class _Levels:
                                                                         CURBS.behind_fit_length))
         sums = RunningSums(averages.shape, RETURN.across_cell)
         sums.add(averages)
-        self.before, self.behind, self.smooth = sums.line(-gap - fit, -gap), sums.line(gap, gap + short), sums.mean(-1, 1)
+        self.before, self.behind, self.smooth = SideLines(sums, -gap - fit, -gap), SideLines(sums, gap, gap + short), sums.mean(-1, 1)
         filled = (self.before.n >= CURBS.min_filled_share * (fit + 1)) & (self.behind.n >= CURBS.min_filled_share * (short + 1))
         self.height = np.where(filled, self.behind.level - self.before.level, np.nan)
 
@@ -296,7 +291,7 @@ def _led_steps_of_section(decimation: PointDecimation, section: tuple[int, int, 
     ground = averaged(raster, settings.layer_jump)
     if ground is None:
         return []
-    return [(int(k), steps) for k, steps in zip(members, led_on(ground, ends[members])) if len(steps)]
+    return [(int(k), steps) for k in members if len(steps := led_on(ground, ends[k:k + 1]))]
 
 
 def _near_ends(survey, road, points, ends):

@@ -101,9 +101,11 @@ def steps_of_points(about: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray,
     """
     owner, u, v, h = about
     corners = StepPatches(owner, u, v, h, np.full(len(x), noise), min_height, max_height, graded=graded).corners()
+    skew = corners["skew"]   # m that a face runs uphill per m along
+    size = np.hypot(1.0, skew)
     # the tangent is the uphill direction turned to the left
     return corners, PlanSteps(x + corners["u"] * nx - corners["s"] * ny, y + corners["u"] * ny + corners["s"] * nx,
-                              *_rotated(nx, ny, corners["skew"]),
+                              (nx + skew * ny) / size, (ny - skew * nx) / size,
                               *(corners[name] for name in ("h", "height", "run", "noise", "support", "behind")))
 
 
@@ -125,12 +127,6 @@ def line_directions(x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray
     side = np.where(lx * nx + ly * ny < 0, -1.0, 1.0)
     across = 0.5 * (sxx + syy - np.hypot(sxx - syy, 2 * sxy)) / np.maximum(k, 1)
     return side * lx, side * ly, (n >= RETURN.min_line_steps) & (across <= RETURN.max_line_scatter**2)
-
-
-def _rotated(nx, ny, skew):
-    """Uphill unit vectors of faces that run `skew` uphill per metre along."""
-    size = np.hypot(1.0, skew)
-    return (nx + skew * ny) / size, (ny - skew * nx) / size
 
 
 def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
@@ -207,7 +203,10 @@ def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.n
              for a in range(0, len(row), RETURN.steps_per_batch)]
     good, rises = (np.concatenate(column, axis=-1) for column in zip(*parts)) if parts else (np.empty(0, bool), np.empty((5, 0)))
     x, y, nx, ny, cost = rises
-    best = _one_of_each_square(x, y, cost)
+    # the cheapest place of every square, squares in order
+    key = _squares(x, y)
+    order = np.lexsort((cost, key))
+    best = order[np.r_[True, np.diff(key[order]) > 0][:len(order)]]
     best = best[in_reach[good][best]]
     return x[best], y[best], nx[best], ny[best]
 
@@ -261,13 +260,6 @@ def _gradient(values, mask, dx, dy):
 def _mean(values, mask):
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(mask, values, 0.0).sum(1) / mask.sum(1)
-
-
-def _one_of_each_square(x, y, cost):
-    """Indices of the cheapest place of every square of two cells, squares in order."""
-    key = _squares(x, y)
-    order = np.lexsort((cost, key))
-    return order[np.r_[True, np.diff(key[order]) > 0][:len(order)]]
 
 
 def _squares(x, y):

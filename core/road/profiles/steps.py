@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from ...common.arrays import best_within
-from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, measure_corners, road_before
+from ..common.corners import MIN_BED_SLOPE, CurbSteps, RunningSums, SideLines, measure_corners, road_before
 from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, nearest_distance, seen_from
 from ..weights import CURBS, PROFILE
 
@@ -19,12 +19,6 @@ def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, lea
 
     Returns CurbSteps, sorted by profile, then outward
     """
-    rows, cells = _rising_cells(lines, min_height, max_height)
-    return measure_corners(lines, rows, cells, min_height, max_height, least_sharpness)
-
-
-def _rising_cells(lines, min_height, max_height):
-    """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
     span = max(int(round(PROFILE.max_rise_width / spacing)), 2)
     # only occupied cells are looked at, profile by profile outward
@@ -55,7 +49,7 @@ def _rising_cells(lines, min_height, max_height):
     best = candidates[best_within(indices.take(candidates), row.take(candidates), (step - 2 * rough).take(candidates), span)]
     row, column, base, slope = (v.take(best) for v in (row, column, base, slope))
     up = _stays_up(low, base, slope, row, column, min_height, spacing)
-    return row[up], column[up]
+    return measure_corners(lines, row[up], column[up], min_height, max_height, least_sharpness)
 
 
 def _stays_up(low, base, slope, rows, columns, min_height, spacing):
@@ -123,8 +117,7 @@ def _steps_in(lines, min_height, max_height, behind=(True,)):
     sums = RunningSums(lines.shape, lines.spacing)
     for skew in sorted(np.arange(-PROFILE.skew_steps, PROFILE.skew_steps + 1) * PROFILE.skew_step, key=abs):
         sums.add(_averaged(lines, skew))
-        for best, is_level in zip(kinds, behind):
-            cells, rises = _rises(sums, PROFILE.oblique_factor * best["rise"], is_level)
+        for best, (cells, rises) in zip(kinds, _rises(sums, [best["rise"] for best in kinds], behind, CURBS.min_steep_share * min_height)):
             for name, values in rises.items():
                 best[name].flat[cells] = values
             best["skew"].flat[cells] = skew
@@ -163,37 +156,43 @@ def _averaged(lines, skew):
     return _median(stack, count, max(PROFILE.min_profile_share * len(stack), 2))
 
 
-def _rises(sums, min_rise, is_level):
-    """(M,) indices of cells at which the ground rises by more than `min_rise`, (P, C) m, and a dict of (M,) measures of each rise.
+def _rises(sums, largest, kinds, least):
+    """Of each kind the (M,) indices of cells at which the ground rises by more than in any direction before, and a dict of (M,) measures of the rise.
 
-    is_level : is the ground behind level, or do plants or a wall rise there?
+    largest : the (P, C) rises of each kind before, m, which are made those of this direction where they are larger
+    kinds : is the ground behind level, or do plants or a wall rise there?
+    least : (P, 1) m, of a rise that is measured
     """
     spacing = sums.spacing
     gap, fit, short = (int(round(v / spacing)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length, CURBS.behind_fit_length))
-    near = int(round(CURBS.steep_half_width / spacing))
-    before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
+    near, rises = int(round(CURBS.steep_half_width / spacing)), []
+    before, behind = SideLines(sums, -gap - fit, -gap), SideLines(sums, gap, gap + short)
     smooth = np.pad(sums.mean(-1, 1), ((0, 0), (near, near)), constant_values=np.nan)
     with np.errstate(invalid="ignore", divide="ignore"):
-        slope = behind.slope if is_level else before.slope
-        height = behind.level - before.level
-        rise = smooth[:, 2 * near:] - smooth[:, :sums.cells] - near * spacing * (before.slope + slope)
-        cells = np.flatnonzero((rise > min_rise) & (before.n >= CURBS.min_filled_share * (fit + 1))
-                               & (behind.n >= CURBS.min_filled_share * (short + 1))
-                               & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
-        if not is_level:
-            lowest = behind.mz.take(cells) - PROFILE.stays_up_sigmas * behind.deviation(cells)
-            bed = behind.slope.take(cells)
-            cells = cells[(lowest > before.level.take(cells) + 0.5 * height.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= CURBS.max_bed_slope)]
-        height = height.take(cells)
-        rough = before.scatter(cells)
-        uneven = behind.scatter(cells) if is_level else rough
-        doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
-        bottom = before.level.take(cells)
-        # where the profile crosses half the height: the mean height of the face gives the distance from this cell
-        shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
-        shift = np.nan_to_num(np.clip(shift, -CURBS.blurred_face_half_width, CURBS.blurred_face_half_width))
-    return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
-                       before=before.slope.take(cells), behind=slope.take(cells))
+        jump = smooth[:, 2 * near:] - smooth[:, :sums.cells]
+        heights = behind.level - before.level
+        stays = ((before.n >= CURBS.min_filled_share * (fit + 1)) & (behind.n >= CURBS.min_filled_share * (short + 1))
+                 & (sums.mean(gap, gap + fit) - before.level > 0.5 * heights))
+        for known, is_level in zip(largest, kinds):
+            slope = behind.slope if is_level else before.slope
+            rise = jump - near * spacing * (before.slope + slope)
+            cells = np.flatnonzero((rise > PROFILE.oblique_factor * known) & stays & np.isfinite(rise))
+            if not is_level:
+                lowest = behind.mz.take(cells) - PROFILE.stays_up_sigmas * behind.deviation(cells)
+                bed = behind.slope.take(cells)
+                cells = cells[(lowest > before.level.take(cells) + 0.5 * heights.take(cells)) & (bed > MIN_BED_SLOPE) & (bed <= CURBS.max_bed_slope)]
+            known.flat[cells] = rise.take(cells)
+            cells = cells[rise.take(cells) >= least.take(cells // sums.cells)]
+            height, bottom, rough = heights.take(cells), before.level.take(cells), before.scatter(cells)
+            uneven = behind.scatter(cells) if is_level else rough
+            doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
+            # where the profile crosses half the height: the mean height of the face gives the distance from this cell
+            face = sums.window_at(1, -gap, gap, cells) / sums.window_at(0, -gap, gap, cells)
+            shift = (0.5 - (face - bottom) / height) * (2 * gap + 1) * spacing
+            shift = np.nan_to_num(np.clip(shift, -CURBS.blurred_face_half_width, CURBS.blurred_face_half_width))
+            rises.append((cells, dict(height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
+                                      before=before.slope.take(cells), behind=slope.take(cells))))
+    return rises
 
 
 def _median(rows, count, min_count):

@@ -20,7 +20,7 @@ from ...common.arrays import Rows
 from ...survey.frame.road_frame import Pass
 from ...survey.lattice.scan_lattice import MirrorPhase, time_order
 from ...survey.store.columns import Columns
-from ...survey.store.records import COORDINATE_SCALE, take_rows
+from ...survey.store.records import COORDINATE_SCALE
 from ..weights import SCANLINE
 
 LINE_OFFSET_UNITS = 2 * 10**10   # derived: 2 km between the offsets of consecutive lines in one sorted array
@@ -69,7 +69,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
 
     Returns ScannerLines, or None where there are fewer than two lines
     """
-    records = take_rows(records, np.abs(records["d"]) <= int(round(corridor / COORDINATE_SCALE)))
+    records = records[np.abs(records["d"]) <= int(round(corridor / COORDINATE_SCALE))]
     if len(records) < 4:
         return None
     time = np.ascontiguousarray(records["time"])

@@ -199,7 +199,9 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
 
 def _views(points):
     """(N,) number of the view of each point, a scanner on a pass, from 0."""
-    views = points.pass_number.astype(np.int64) << 8 | points.scanner
+    views = points.pass_number.astype(np.intp)
+    views <<= 8
+    views |= points.scanner
     return (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
 
 

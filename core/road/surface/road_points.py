@@ -158,6 +158,9 @@ class _SurfaceTables:
         half = row + row
         half += u >= np.float32(0.5)
         left, right = (_line(*limit, half, u) for limit in (self.left, self.right))
+        across = d.astype(np.float32)
+        inside = np.flatnonzero((across < left) & (across > right))
+        row, u, d, z = (values.take(inside) for values in (row, u, d, z))
         cell, v = _steps(d, self.d0, SURFACE.column_width)
         row *= np.int32(self.columns)
         cell += row
@@ -170,15 +173,13 @@ class _SurfaceTables:
         surface += along
         rise = z - self.corner.take(cell, mode="clip")
         rise = rise - surface
-        d = d.astype(np.float32)
-        inside = d < left
-        inside &= d > right
-        on_road = np.flatnonzero((np.abs(rise) < self.tolerance) & inside)
-        width = np.where(d >= 0, left, -right).take(on_road)
+        on_road = np.flatnonzero(np.abs(rise) < self.tolerance)
+        rows = inside.take(on_road)
+        width = np.where(d.take(on_road) >= 0, left.take(rows), -right.take(rows))
         width *= np.float32(COORDINATE_SCALE * 1e3)
         width += np.float32(0.5)
         np.minimum(width, np.float32(65535), out=width)
-        return on_road, width.astype(np.uint16), np.flatnonzero((rise > self.low) & (rise < self.high) & inside)
+        return rows, width.astype(np.uint16), inside[(rise > self.low) & (rise < self.high)]
 
 
 def _middles(units, size, first, count):

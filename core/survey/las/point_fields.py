@@ -76,20 +76,20 @@ def times_by_value(values: np.ndarray, time: np.ndarray, span: tuple[float, floa
 
     Points at times out of the span do not count: some exporters write a wrong time here and there.
     """
-    if len(values) and not (time.min() >= span[0] and time.max() <= span[1]):
-        usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
-        values, time = values[usable], time[usable]
     if not len(values):
         return {}
+    ends = float(time.min()), float(time.max())
+    if not (ends[0] >= span[0] and ends[1] <= span[1]):
+        usable = np.flatnonzero((time >= span[0]) & (time <= span[1]))
+        return times_by_value(values[usable], time[usable])
     # a broadcast column has one value
     distinct = values if values.strides[0] else values[:1]
     low, high = int(distinct.min()), int(distinct.max())
-    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
-    times_of = {}
-    for value in present:
-        times = time if low == high else time[values == value]
-        times_of[value] = float(times.min()), float(times.max()), len(times)
-    return times_of
+    if low == high:
+        return {low: (*ends, len(values))}
+    present = [low, high] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * LAS.max_scanners + 1].tolist()
+    times_of = {value: time[values == value] for value in present}
+    return {value: (float(times.min()), float(times.max()), len(times)) for value, times in times_of.items()}
 
 
 def numbers_by_value(scanners: Sequence[Any], count: int) -> np.ndarray:

@@ -156,7 +156,8 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
     order = np.argsort(time, kind="stable")
-    alike = time[order[1:]] == time[order[:-1]]
+    ordered = time[order]
+    alike = ordered[1:] == ordered[:-1]
     rows = order[(np.append(False, alike) | np.append(alike, False))[:len(order)]]
     # few points are measured at one time, unless by a scanner of many beams
     rows = rows[np.lexsort((*place[rows].T, time[rows]))]
@@ -172,8 +173,9 @@ def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
     time : (N,) seconds of points, each given once; place : (N, 3) m
     """
     order = np.argsort(time, kind="stable")
+    ordered = time[order]
     for later in (1, 2):   # of two scanners that measure at the same times, the copy of a point comes after the other's
-        pairs = np.flatnonzero(time[order[later:]] == time[order[:-later]])
+        pairs = np.flatnonzero(ordered[later:] == ordered[:-later])
         if len(pairs) < LAS.least_doubled * len(time):
             return
         apart = place[order[pairs + later]] - place[order[pairs]]

@@ -23,7 +23,7 @@ from ...common.arrays import RADIX_BITS
 from ...common.progress import Progress
 from ...execution.in_step import Asked, Work, in_step
 from ...execution.phase import Phase
-from ..store.records import COORDINATE_SCALE, take_rows
+from ..store.records import COORDINATE_SCALE
 from ..weights import LATTICE
 
 TIME_SORT_TICK = 2.0**-22      # derived: s: finer than the resolution of any clock
@@ -117,7 +117,7 @@ def scanner_runs(records: Any) -> list[tuple[tuple[int, int], Any]]:
     first = (records["returns"] & 15) <= 1
     if len(values) == 1 and first.all():
         return [(divmod(values[0], 256), records)]
-    return [(divmod(value, 256), take_rows(records, (key == value - 256 * number) & first)) for value in values]
+    return [(divmod(value, 256), records[(key == value - 256 * number) & first]) for value in values]
 
 
 def _phasors(survey, number, records):

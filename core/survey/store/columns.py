@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-ROW_CHUNK = 1 << 14    # cost: rows that are split into columns at a time: they fit the processor's cache
-
 
 class Columns:
     """Arrays of one length by name, used like a structured array.
@@ -47,15 +45,15 @@ class Columns:
         return cls({name: np.ascontiguousarray(records[name]) for name in records.dtype.names or ()}, records.dtype, len(records))
 
     @classmethod
-    def concatenate(cls, parts: Sequence[Columns], dtype: Any) -> Columns:
-        """Several Columns one after the other; no parts give empty Columns of the dtype."""
-        parts = [part for part in parts if len(part)]
-        if len(parts) == 1:
-            return parts[0]
+    def concatenate(cls, parts: Sequence[np.ndarray | Columns], dtype: Any) -> Columns:
+        """Several records one after the other; no parts give empty Columns of the dtype."""
+        filled = [cls.from_records(part) for part in parts if len(part)]
+        if len(filled) == 1:
+            return filled[0]
         dtype = np.dtype(dtype)
-        if not parts:
+        if not filled:
             return cls({name: np.empty(0, dtype[name]) for name in dtype.names or ()}, dtype, 0)
-        return cls({}, dtype, sum(map(len, parts)), lambda name: np.concatenate([part[name] for part in parts]), parts=parts)
+        return cls({}, dtype, sum(map(len, filled)), lambda name: np.concatenate([part[name] for part in filled]), parts=filled)
 
     def __len__(self) -> int:
         return self._length
@@ -64,11 +62,6 @@ class Columns:
     def shape(self) -> tuple[int]:
         """(N,), as of an array."""
         return (self._length,)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all columns, whether or not they are in memory."""
-        return self._length * self.dtype.itemsize
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -180,16 +173,3 @@ class Columns:
         for name in self.names:
             records[name] = self[name]
         return records
-
-
-def columns_in_order(records: np.ndarray, order: np.ndarray) -> Columns:
-    """Columns of the (M,) rows of a structured array in a given order; each row is read once."""
-    dtype = records.dtype
-    arrays = {name: np.empty(len(order), dtype[name]) for name in dtype.names or ()}
-    buffer = np.empty(min(len(order), ROW_CHUNK), dtype)
-    for first in range(0, len(order), ROW_CHUNK):
-        rows = order[first:first + ROW_CHUNK]
-        chunk = np.take(records, rows, out=buffer[:len(rows)], mode="clip")
-        for name, array in arrays.items():
-            array[first:first + len(rows)] = chunk[name]
-    return Columns(arrays, dtype, len(order))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...execution.phase import THREADS, Executor, Recipe
 from .columns import Columns
-from .records import ROAD_POINT, Points, Seen, join_columns, point_dtype, points_of_scanners, seen_in_section
+from .records import ROAD_POINT, Points, Seen, point_dtype, points_of_scanners, seen_in_section
 from .section_store import SectionStore, Stretch
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class RoadPoints:
     def all_points(self) -> Points:
         """All points in one structured array, ordered by road and section; only for sets known to be small, such as paint."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
-        return Points(np.asarray(join_columns(parts, self.store.dtype)))
+        return Points(np.asarray(Columns.concatenate(parts, self.store.dtype)))
 
 
 def _shared_road_points(survey: Any, **others: Any) -> RoadPoints:

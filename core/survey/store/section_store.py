@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -19,8 +20,8 @@ from ...execution.phase import THREADS, Executor, Recipe
 from ...execution.weights import EXECUTION
 from ..weights import STORE
 from .array_file import ArrayFile, close_files, new_file, opened
-from .columns import Columns, columns_in_order
-from .records import COORDINATE_SCALE, Points, take_rows
+from .columns import Columns
+from .records import COORDINATE_SCALE, Points
 
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
 STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
@@ -131,7 +132,7 @@ class SectionStore:
         np.floor(strip, out=strip)
         strip -= STORE.strips_per_section * low
         order, ends = bucket_argsort(strip, STORE.strips_per_section * (high + 1 - low), mask)
-        columns = records.take(order) if isinstance(records, Columns) else columns_in_order(records, order)
+        columns = Columns.from_records(records).take(order)
         return PartitionedPoints(int(road), columns, low, ends[STORE.strips_per_section - 1::STORE.strips_per_section].tolist())
 
     def add(self, points: PartitionedPoints) -> None:
@@ -256,12 +257,11 @@ class SectionStore:
     def first_unit(self, section: int) -> int:
         """The least station, in units of 0.1 mm, that lies in a section."""
         return _least(int(round(section * self.section_length / COORDINATE_SCALE)),
-                      lambda unit: np.floor(unit * COORDINATE_SCALE / self.section_length) >= section)
+                      lambda unit: math.floor(unit * COORDINATE_SCALE / self.section_length) >= section)
 
     def window(self, road: int, start: float, end: float) -> Points:
         """Points of a road with start <= station < end (metres), in canonical order."""
-        first = int(np.floor(start / self.section_length))
-        last = int(np.floor(np.nextafter(end, -np.inf) / self.section_length))
+        first, last = math.floor(start / self.section_length), math.floor(np.nextafter(end, -np.inf) / self.section_length)
         parts = []
         for number in range(first, last + 1):
             records = self.section(road, number)
@@ -418,7 +418,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
     for names in (PLACE_KEYS, ALL_KEYS):
         if len(tied):
             places = np.union1d(tied, tied + 1)
-            tied_rows = take_rows(records, order[places])
+            tied_rows = records[order[places]]
             keys = [tied_rows[name] for name in names]
             by_keys = np.lexsort(keys)
             order[places] = order[places[by_keys]]

@@ -7,7 +7,8 @@ ASAM OpenDRIVE 1.7 and 1.8, the tables of attributes and the rules at the end of
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,6 @@ def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Pro
         report.plan(road)
         report.profile(road)
         report.sections(road)
-        report.objects(road)
         progress.report(0.6 * (count + 1) / len(whole.roads))
     report.statements()
     report.overlaps()
@@ -64,8 +64,8 @@ class _RoadCheck:
 
     def statements(self) -> None:
         """What the file says that the format does not have, and whether its header fits the roads."""
-        if self.whole.tree is not None:
-            _Statements(self.whole.tree, lambda fault, element, text, road, s: self.add(fault, element, text, self.whole.road(road), s))
+        for fault, element, text, road, s in _statements(self.whole.tree) if self.whole.tree is not None else ():
+            self.add(fault, element, text, self.whole.road(road), s)
         if self.whole.reference:
             try:
                 metric_wkt(self.whole.reference, "The map")
@@ -76,7 +76,9 @@ class _RoadCheck:
         west, south, east, north = self.whole.bounds
         places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
         outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
-        if (east > west or north > south) and outside.any():
+        if south > north or west > east:
+            self.add("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", None, 0.0)
+        elif (east > west or north > south) and outside.any():
             x, y = places[np.flatnonzero(outside.any(1))[0]]
             self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
 
@@ -170,12 +172,6 @@ class _RoadCheck:
         rings = [np.concatenate([inner, outer[::-1]])[:, :2] for inner, outer in (surface.borders(number, id, s, offsets) for id in driven)]
         return shapely.union_all(shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object)))
 
-    def objects(self, road: MapRoad) -> None:
-        for item in road.objects:
-            if not -MAX_LENGTH_ERROR <= item["s"] <= road.length + MAX_LENGTH_ERROR:
-                self.add("object off the road", f"road {road.id}, object {item['id']}", f"It is at s = {item['s']:.2f} of {road.length:.2f} m.",
-                         road, item["s"])
-
     def overlaps(self) -> None:
         roads, shapes = [road for road, _ in self.areas], np.array([shape for _, shape in self.areas], object)
         heights = [float(road.elevation.at(road.length / 2)) for road in roads]
@@ -262,8 +258,12 @@ class _Links:
             if junction.id in seen:
                 self.findings.add("id twice", f"junction {junction.id}", "There is another junction of this id.", np.zeros(3))
             seen.add(junction.id)
+            ids = Counter(connection.id for connection in junction.connections)
             for connection in junction.connections:
                 self._connection(junction.id, connection)
+                if ids[connection.id] > 1:
+                    self.findings.add("id twice", f"junction {junction.id}, connection {connection.id}", "There is another connection of this id.",
+                                      np.zeros(3))
             ways = {id for connection in junction.connections for id in (connection.incoming, connection.connecting)}
             for id in dict.fromkeys(id for pair in junction.priorities for id in pair if id not in ways):
                 self.findings.add("connection", f"junction {junction.id}", f"A priority names road {id}, which is not part of it.", np.zeros(3))
@@ -359,6 +359,8 @@ def _connection_faults(junction, connection, incoming, connecting):
         return
     if not connection.lanes:
         yield "It links no lanes."
+    if len(set(connection.lanes)) < len(connection.lanes):
+        yield "It links the same lanes twice."
     connecting_lanes = connecting.lanes_at(connection.contact)
     for start, to in connection.lanes:
         if to not in connecting_lanes or start not in set().union(*incoming_lanes):
@@ -412,117 +414,81 @@ ROAD_RECORDS = ((("type",), False), (("planView", "geometry"), True), (("elevati
 LANE_RECORDS = (("width", True), ("border", True), ("roadMark", False), ("height", False), ("speed", False))
 
 
-class _Statements:
-    """Adds every statement of the element <OpenDRIVE> that the format does not allow.
-
-    add : takes a fault of FAULTS, what it is about, what was seen, the id of a road, "" for none, and metres along it
-    """
-
-    def __init__(self, root: XmlElement, add: Callable[[str, str, str, str, float], None]) -> None:
-        self.add, header = add, root.find("header")
-        self.minor = _number(header, "revMinor", MINORS[-1]) if header is not None else MINORS[-1]
-        self.seen: dict[str, set[str]] = {"object": set(), "signal": set()}
-        if header is not None:
-            self._header(header)
-        for road in root.all("road"):
-            self._road(road)
-        for junction in root.all("junction"):
-            self._junction(junction)
-
-    def _header(self, header):
-        try:
-            major, minor = header.number("revMajor"), header.number("revMinor")
-        except RoadExtractionError as problem:
-            self.add("value", "header", str(problem), "", 0.0)
-        else:
-            if major != 1 or minor not in MINORS:
-                self.add("value", "header", f"The version is {major:g}.{minor:g}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0)
-        south, north, west, east = (_number(header, name, 0.0) for name in ("south", "north", "west", "east"))
-        if south > north or west > east:
-            self.add("bounds", "header", f"South {south:g} to north {north:g}, west {west:g} to east {east:g}.", "", 0.0)
-
-    def _road(self, road):
-        id, length = road.get("id"), _number(road, "length", 0.0)
-
-        def say(fault, part, text, s=0.0):
-            self.add(fault, f"road {id}, {part}" if part else f"road {id}", text, id, s)
-
-        for path, zero in ROAD_RECORDS:
-            for text in _order(road, path, "s", length, zero):
-                say("record order", path[-1], text)
-        shapes = [(_number(shape, "s", 0.0), _number(shape, "t", 0.0)) for shape in road.all("lateralProfile", "shape")]
-        if shapes != sorted(shapes):
-            say("record order", "shape", "The shapes do not go on from s to s and from t to t.")
-        for geometry in road.all("planView", "geometry"):
-            _state_geometry(geometry, say)
-        numbers = _state_lanes(road, length, say)
-        for kind, seen in self.seen.items():
-            for element in road.all(f"{kind}s", kind):
-                _state_object(element, kind, length, numbers, seen, say)
-        for element in _within(road):
-            for text in _values(element, self.minor):
-                say("value", "", text)
-
-    def _junction(self, junction):
-        name, seen = f"junction {junction.get('id')}", set()
-        for connection in junction.all("connection"):
-            label, road = f"{name}, connection {connection.get('id')}", connection.get("connectingRoad")
-            if connection.get("id") in seen:
-                self.add("id twice", label, "There is another connection of this id.", road, 0.0)
-            seen.add(connection.get("id"))
-            links = [(link.get("from"), link.get("to")) for link in connection.all("laneLink")]
-            if len(set(links)) < len(links):
-                self.add("connection", label, "It links the same lanes twice.", road, 0.0)
+def _statements(root: XmlElement) -> Iterator[tuple[str, str, str, str, float]]:
+    """Every statement of the element <OpenDRIVE> that the format does not allow: a fault of FAULTS, what it is about, what was seen, the id of a
+    road, "" for none, and metres along it."""
+    header, minor = root.find("header"), float(MINORS[-1])
+    if header is not None:
+        major, minor = (_number(header, name, np.nan) for name in ("revMajor", "revMinor"))
+        if major != 1 or minor not in MINORS:
+            yield "value", "header", f"The version is {header.get('revMajor')}.{header.get('revMinor')}; there are 1.0 to 1.{MINORS[-1]}.", "", 0.0
+    seen: dict[str, set[str]] = {"object": set(), "signal": set()}
+    for road in root.all("road"):
+        id = road.get("id")
+        for fault, part, text, s in _stated_of_road(road, minor, seen):
+            yield fault, f"road {id}, {part}" if part else f"road {id}", text, id, s
 
 
-# Parts of a road; `say` takes a fault, which part of the road, what was seen, and metres along the road.
+# Of a road (fault, which part of it, what was seen, metres along it).
 
-def _state_geometry(geometry, say):
-    shapes = [child for child in geometry.children if child.tag in GEOMETRIES]
-    s = _number(geometry, "s", 0.0)
-    if len(shapes) > 1:
-        say("two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in shapes)}.", s)
-    if any(child.tag == "arc" and _number(child, "curvature", 1.0) == 0 for child in shapes):
-        say("value", "geometry", f"The arc at s = {s:g} has no curvature; it is a line.", s)
+def _stated_of_road(road, minor, seen):
+    length = _number(road, "length", 0.0)
+    for path, zero in ROAD_RECORDS:
+        for text in _order(road, path, "s", length, zero):
+            yield "record order", path[-1], text, 0.0
+    shapes = [(_number(shape, "s", 0.0), _number(shape, "t", 0.0)) for shape in road.all("lateralProfile", "shape")]
+    if shapes != sorted(shapes):
+        yield "record order", "shape", "The shapes do not go on from s to s and from t to t.", 0.0
+    for geometry in road.all("planView", "geometry"):
+        kinds = [child for child in geometry.children if child.tag in GEOMETRIES]
+        s = _number(geometry, "s", 0.0)
+        if len(kinds) > 1:
+            yield "two at once", "geometry", f"The geometry at s = {s:g} is {' and '.join(child.tag for child in kinds)}.", s
+        if any(child.tag == "arc" and _number(child, "curvature", 1.0) == 0 for child in kinds):
+            yield "value", "geometry", f"The arc at s = {s:g} has no curvature; it is a line.", s
+    yield from _stated_of_lanes(road, length)
+    numbers = {_number(lane, "id", 0.0) for lane in _within(road) if lane.tag == "lane"}
+    for kind in seen:
+        for one in road.all(f"{kind}s", kind):
+            yield from _stated_of_object(one, kind, length, numbers, seen[kind])
+    for element in _within(road):
+        for text in _values(element, minor):
+            yield "value", "", text, 0.0
 
 
-def _state_lanes(road, length, say):
-    """Returns the numbers of all lanes."""
+def _stated_of_lanes(road, length):
     sections = list(road.all("lanes", "laneSection"))
     starts = [*(_number(section, "s", 0.0) for section in sections), length]
-    numbers = []
     for section, start, end in zip(sections, starts[:-1], starts[1:]):
         for lane in (lane for side in ("left", "center", "right") for lane in section.all(side, "lane")):
             name = f"section at {start:g}, lane {lane.get('id')}"
             for tag, zero in LANE_RECORDS:
                 for text in _order(lane, (tag,), "sOffset", end - start, zero):
-                    say("record order", name, f"{tag}: {text}", start)
+                    yield "record order", name, f"{tag}: {text}", start
             if lane.find("width") is not None and lane.find("border") is not None:
-                say("two at once", name, "It has widths and borders; only the widths are read.", start)
-            numbers.append(_number(lane, "id", 0.0))
-            if numbers[-1] % 1:
-                say("value", name, f"Its number is {lane.get('id')}.", start)
-    return {int(number) for number in numbers if np.isfinite(number)}
+                yield "two at once", name, "It has widths and borders; only the widths are read.", start
+            if _number(lane, "id", 0.0) % 1:
+                yield "value", name, f"Its number is {lane.get('id')}.", start
 
 
-def _state_object(one, kind, length, numbers, seen, say):
-    """An object or signal of a road with lanes of these numbers."""
+def _stated_of_object(one, kind, length, numbers, seen):
+    """The same of an object or signal of a road with lanes of these numbers."""
     name, s, t = f"{kind} {one.get('id')}", _number(one, "s", 0.0), _number(one, "t", 0.0)
     if one.get("id") in seen:
-        say("id twice", name, f"There is another {kind} of this id.", s)
+        yield "id twice", name, f"There is another {kind} of this id.", s
     seen.add(one.get("id"))
     if abs(t) > FARTHEST_OBJECT:
-        say("object off the road", name, f"It is {abs(t):.0f} m beside the reference line.", s)
-    if kind == "signal" and not -STATED_NEAR <= s <= length + STATED_NEAR:
-        say("object off the road", name, f"It is at s = {s:.2f} of {length:.2f} m.", s)
+        yield "object off the road", name, f"It is {abs(t):.0f} m beside the reference line.", s
+    if not -STATED_NEAR <= s <= length + STATED_NEAR:
+        yield "object off the road", name, f"It is at s = {s:.2f} of {length:.2f} m.", s
     for validity in one.all("validity"):
         first, last = _number(validity, "fromLane", 0.0), _number(validity, "toLane", 0.0)
         if first > last or not numbers.issuperset((first, last)):
-            say("lane link", name, f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s)
+            yield "lane link", name, f"It is valid from lane {first:g} to lane {last:g}, which the road does not have.", s
     for outline in [*one.all("outlines", "outline"), *one.all("outline")]:
         corners = sum(child.tag in ("cornerRoad", "cornerLocal") for child in outline.children)
         if 0 < corners < 3 and outline.get("closed", "true") != "false":
-            say("value", name, f"Its outline has {corners} corners.", s)
+            yield "value", name, f"Its outline has {corners} corners.", s
 
 
 def _order(parent, path, key, length, zero):

@@ -228,24 +228,13 @@ class _Fit:
             if not self._is_straight(start, least):
                 start = max(start + 1, int(np.searchsorted(self.along, self.along[start] + LEAST_STRAIGHT / 8)))
                 continue
-            good = self._straight_to(start, least)
+            good = farthest(least, self.last, lambda k: self._is_straight(start, k), least - start)
             first = start if start == 0 else int(np.searchsorted(self.along, self.along[start] + TRIMMED))
             last = good if good == self.last else int(np.searchsorted(self.along, self.along[good] - TRIMMED))
             if self.along[last] - self.along[first] >= LEAST_STRAIGHT / 2 and self._lay_on_line(first, last):
                 lines[first] = last
             start = good + 1
         return lines
-
-    def _straight_to(self, start, good):
-        """The farthest place to which the line is straight, by doubling steps and halving; to `good` it is."""
-        bad, step = self.last + 1, good - start
-        while good < self.last and bad - good > 1:
-            tried = min(good + step, self.last) if bad > self.last else (good + bad) // 2
-            if self._is_straight(start, tried):
-                good, step = tried, 2 * step
-            else:
-                bad = tried
-        return good
 
     def _is_straight(self, first, last):
         allowed = max(STRAIGHT_SHARE * self.tolerance, NOISE_TIMES * self.noise)
@@ -268,6 +257,15 @@ class _Fit:
         for k, point in zip((first, last), places):
             self.known[k] = _Pose(float(point[0]), float(point[1]), heading)
         return True
+
+
+def farthest(good: int, last: int, holds: Callable[[int], bool], step: int = 1) -> int:
+    """The farthest place up to `last` for which a condition holds, by doubling steps and halving; for `good` it does."""
+    bad = last + 1
+    while bad - good > 1:
+        tried = min(good + step, last) if bad > last else (good + bad) // 2
+        good, bad, step = (tried, bad, 2 * step) if holds(tried) else (good, tried, step)
+    return good
 
 
 def _noise_of(fits):

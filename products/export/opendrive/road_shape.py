@@ -11,7 +11,7 @@ import numpy as np
 from ..sources import LEAST_CHORD, LEAST_CURB
 from .geometry import LEAST_STEP, STEP_RUN, Cubics, LineBundle, PlanView, difference, fit_cubics, risen, simplified
 from .model import LaneSection, MapLane, MapRoad, shape_height
-from .reference_line import Steps, polynomial_reference, reference_steps
+from .reference_line import Steps, farthest, polynomial_reference, reference_steps
 from .strips import MOST_TURN, SLOPE_REACH, Slice
 
 NEAREST_POINTS = 0.005   # m within which two places of a guide line are one
@@ -177,16 +177,13 @@ def _course(strip, k, j, frame, ends):
 def _guide(strip, centres):
     """((N, 2) places, rows of them for each slice) along lane 0 without its jumps, from the longest slice outwards."""
     lines = [part.borders()[centre][:, :2] for part, centre in zip(strip, centres)]
-    first = int(np.argmax([part.length for part in strip]))
-    placed = {first: lines[first]}
+    first, placed = int(np.argmax([part.length for part in strip])), dict(enumerate(lines))
     for k in range(first + 1, len(strip)):
         placed[k] = _beside(lines[k], placed[k - 1][-1], 0)
     for k in range(first - 1, -1, -1):
         placed[k] = _beside(lines[k], placed[k + 1][0], -1)
-    rows, start = [], 0
-    for k in range(len(strip)):
-        rows.append(np.arange(start, start + len(lines[k])))
-        start += len(lines[k]) - 1
+    starts = np.cumsum([0, *(len(line) - 1 for line in lines)])
+    rows = [np.arange(start, end + 1) for start, end in zip(starts[:-1], starts[1:])]
     return np.concatenate([placed[0], *(placed[k][1:] for k in range(1, len(strip)))]), rows
 
 
@@ -485,14 +482,7 @@ def _telling(profiles, tolerance):
     """Numbers of the cross-sections between which all others are interpolated within a tolerance."""
     kept, last = [0], len(profiles) - 1
     while kept[-1] < last:
-        first, step = kept[-1], 1
-        while first + 2 * step <= last and _between(profiles, first, first + 2 * step, tolerance):
-            step *= 2
-        good, bad = first + step, min(first + 2 * step, last + 1)
-        while bad - good > 1:
-            tried = (good + bad) // 2
-            good, bad = (tried, bad) if _between(profiles, first, tried, tolerance) else (good, tried)
-        kept.append(good)
+        kept.append(farthest(kept[-1] + 1, last, lambda k: _between(profiles, kept[-1], k, tolerance)))
     return kept
 
 

@@ -110,6 +110,19 @@ def test_an_edge_that_is_drawn_has_the_side_of_its_place_and_the_heights_of_the_
     np.testing.assert_allclose(shapely.get_coordinates(drawn, include_z=True)[:, 2], HEIGHT, atol=0.01)
 
 
+def test_a_curb_that_is_drawn_has_the_heights_that_it_brings():
+    street = Street()
+    line = shapely.force_3d(along(45, 90, 4.1), HEIGHT + 0.5)
+    _, found, _ = corrected_edges(street, edges_of(street, (10, 40, 4.0, "measured")), ("draw", "edge", line, {"height_m": 0.12}))
+    drawn, row = next((line, row) for line, row in found if row["status"] == "drawn")
+    assert row["height_m"] == pytest.approx(0.12)
+    np.testing.assert_allclose(shapely.get_coordinates(drawn, include_z=True)[:, 2], HEIGHT + 0.5, atol=0.001)
+    rows = layer_of(("draw", "edge", line))
+    rows.rows[0]["height_m"] = "a foot"   # of a table that was made elsewhere
+    with pytest.raises(RoadExtractionError, match="Row 1 .* height 'a foot'"):
+        corrections_from_features(rows, street.frame)
+
+
 def test_an_edge_that_is_moved_leaves_its_old_place_and_keeps_its_side_and_kind():
     street = Street()
     edges = edges_of(street, (10, 100, 4.0, "measured"))

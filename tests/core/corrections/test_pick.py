@@ -98,7 +98,7 @@ def test_a_line_drawn_where_nothing_is_stays_as_it_is():
 @pytest.mark.parametrize("shape", [dict(), dict(height=0.03), dict(height=0.2), dict(lean=0.15), dict(density=100), dict(bend=True)])
 @pytest.mark.parametrize("turned", [0, 25])
 def test_a_click_in_a_section_finds_the_bottom_and_the_top_of_the_face_there(shape, turned):
-    """Also where the section lies askew to the curb."""
+    """Also where the section lies oblique to the curb."""
     bend, height, lean = shape.get("bend", False), shape.get("height", 0.12), shape.get("lean", 0.0)
     face = face_at(street(**shape), *on_map(2.0, FACE + 0.2, bend), AZIMUTH + turned)
     s, d = on_road(face.places[:, :2], bend)

@@ -10,11 +10,13 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
 from lanewright.core.intensity.tiled_image import TiledImage, stored_tiles
 from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff, write_display_image
-from lanewright.core.markings.paint.windows import marking_mask
+from lanewright.core.markings.paint.windows import write_mask
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.array_file import SharedArrays
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 gdal = pytest.importorskip("osgeo.gdal")
 
@@ -94,13 +96,15 @@ def as_on_windows(monkeypatch):
 
 
 def test_an_image_is_closed_before_it_takes_its_name(tmp_path, as_on_windows):
-    image = image_of(painted_street(length=20.0), tmp_path / "image.tif")
+    records, along = painted_street(length=20.0), np.linspace(0, 20, 101)
+    image = image_of(records, tmp_path / "image.tif")
     write_display_image(image.path, tmp_path / "display.tif")
-    with marking_mask(tmp_path / "mask.tif", image, ORIGIN) as burn:
-        burn(np.array([5.0]), np.array([1.0]))
+    frame = build_frame(Trajectory(along, ORIGIN[0] + along, np.full(101, ORIGIN[1]), np.full(101, 102.0)))
+    painted = records[records["intensity"] > (PAINT + ASPHALT) / 2]
+    write_mask(tmp_path / "mask.tif", road_points(painted[np.argsort(painted["s"])]), image, frame)
     assert as_on_windows == ["image.tif", "display.tif", "mask.tif"]
     mask = gdal.Open(str(tmp_path / "mask.tif"))
-    assert np.frombuffer(mask.ReadRaster(), np.uint8).sum() == 1
+    assert np.frombuffer(mask.ReadRaster(), np.uint8).sum() * image.geotransform[1]**2 == pytest.approx(20 * 0.15, rel=0.2)
 
 
 def test_without_the_brightness_rule_a_pixel_is_plain_inverse_distance(tmp_path):
@@ -336,19 +340,7 @@ def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_t
     write_display_image(tmp_path / "i.tif", tmp_path / "d.tif")
     values = IntensityImage.open(tmp_path / "d.tif").sample(np.array([5.0, 5.0, 1e6 + 5.0, 1e6 + 5.0]), np.array([1.0, 0.0, 1.0, 0.0]), ORIGIN)
     assert values[0] > values[1] + 100 and values[2] > values[3] + 100
-    grey, _ = grey_background(tmp_path / "i.tif", longest=1000)
-    assert grey[:, 0].all() and grey[:, -1].all() and not grey[:, 1:-1].any(), "both towns, and nothing between"
-
-
-def test_a_report_shows_the_same_background_when_only_tiles_with_data_are_read(tmp_path, monkeypatch):
-    from lanewright.products.report import page as background
-
-    image_of(painted_street(length=40.96), tmp_path / "i.tif", ImageSettings(cell_size=0.02))
-    whole, extent = background.grey_background(tmp_path / "i.tif", longest=100)
-    monkeypatch.setattr(background, "MAX_AVERAGED_SIDE", 0)
-    tiles, again = background.grey_background(tmp_path / "i.tif", longest=100)
-    assert extent == again and whole.shape == tiles.shape
-    assert (np.abs(whole.astype(int) - tiles) <= 25).mean() > 0.9
+    assert grey_background(tmp_path / "i.tif") is None, "in a picture of both no road would be seen"
 
 
 def test_tiles_with_data_are_listed_row_by_row(tmp_path):

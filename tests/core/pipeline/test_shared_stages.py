@@ -58,17 +58,18 @@ def by_threads(sample):
     return found_by(sample)
 
 
-def test_worker_processes_killed_or_not_find_what_threads_find(sample, by_threads):
-    """One is killed in one phase after another: it is replaced, and nothing is lost."""
-    for executor in (Noting(2), Noting(1, KILLED_IN)):
-        assert found_by(sample, executor) == by_threads
-        assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.killed_in and not executor.folder.exists()
+def test_worker_processes_that_are_killed_in_one_phase_after_another_find_what_threads_find(sample, by_threads):
+    """They are replaced, and nothing is lost."""
+    executor = Noting(1, KILLED_IN)
+    assert found_by(sample, executor) == by_threads
+    assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.killed_in and not executor.folder.exists()
 
 
-def test_of_no_stage_is_anything_done_again_in_a_work_folder(sample, by_threads, tmp_path):
-    work = work_folder(str(tmp_path / "work"))
-    assert found_by(sample, Noting(2), work) == by_threads
-    kept, again = files_of(work), Noting(2)
+def test_worker_processes_find_what_threads_find_and_in_a_work_folder_do_nothing_again(sample, by_threads, tmp_path):
+    work, first, again = work_folder(str(tmp_path / "work")), Noting(2), Noting(2)
+    assert found_by(sample, first, work) == by_threads
+    assert all(first.tasks[name] > 1 for name in PHASES)
+    kept = files_of(work)
     assert found_by(sample, again, work) == by_threads
     assert not any(again.tasks.values()) and files_of(work) == kept and not any("part" in name for name in kept)
 

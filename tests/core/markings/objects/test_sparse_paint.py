@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of
-from painted_streets import paint, records_at, road_points, strip
+from painted_streets import between, paint, records_at, road_points, strip
 
 
 def sparse(records, across=0.20, along=0.13):
@@ -19,7 +19,7 @@ def bars(count, turn=1.0):
     def on(s, d):
         phase = s + turn * (d - 2.0) - 20.0
         return (d >= 2.0) & (d < 5.0) & (phase % 2.5 < 1.0) & (phase >= 0) & (phase < 2.5 * count)
-    return on
+    return between(17, 20 + 2.5 * count, on)
 
 
 def test_hatching_far_off_keeps_its_bars():
@@ -34,7 +34,7 @@ def test_a_broad_line_far_off_is_one_line_as_wide_as_it_is():
     def line(s, d):
         return (s >= 10) & (s < 70) & (d >= 3.0 + 0.02 * s) & (d < 3.3 + 0.02 * s)
 
-    markings, _ = layer_of(road_points(sparse(paint(FRAME, [line], density=20000)), FRAME), FRAME)
+    markings, _ = layer_of(road_points(sparse(paint(FRAME, [between(10, 70, line)], density=20000, reach=5.0)), FRAME), FRAME)
     longest = max(markings.rows, key=lambda row: row["length_m"])
     assert longest["length_m"] == pytest.approx(60.0, abs=3.0)
     assert longest["width_m"] == pytest.approx(0.30, abs=0.08)

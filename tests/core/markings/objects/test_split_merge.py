@@ -63,6 +63,14 @@ def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
     assert share_together(labels, owner, 0) > 0.85 and share_together(labels, owner, 1) > 0.9
 
 
+@pytest.mark.parametrize("station", [0, 1, 4, 98765])
+def test_scan_lines_as_far_apart_as_paint_may_be_make_one_line_wherever_on_the_road(station):
+    records, owner = paint((0, 30, 3.0, 3.15), (20.0, 20.4, 0.0, 3.0))
+    kept = (owner == 1) | (records["s"] // 400 % 10 == 0)   # the edge line on every tenth cell of 4 cm alone
+    records["s"] += 400 * station
+    assert len(np.unique(split(records[kept])[owner[kept] == 0])) == 1
+
+
 @pytest.mark.parametrize("breadth", [0.9, 1.4])
 def test_what_wear_left_of_a_stop_line_is_cut_from_the_dash_before_it(breadth):
     records, owner = paint((0, 0.4, 0.0, breadth), (-4.0, 0.0, -0.075, 0.075))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of, markings_of
-from painted_streets import paint, road_points, strip
+from painted_streets import between, paint, road_points, strip
 
 
 def zigzag(s0, s1, d0, run, depth, width=0.12, gap=0.0):
@@ -12,7 +12,7 @@ def zigzag(s0, s1, d0, run, depth, width=0.12, gap=0.0):
         middle = d0 + depth * np.abs((s - s0) / run % 2 - 1)
         stroke = np.abs(d - middle) < width / 2 * np.hypot(1, depth / run)
         return stroke & (s > s0) & (s < s1) & ((s - s0) % run >= gap)
-    return painted
+    return between(s0, s1, painted)
 
 
 GERMAN = dict(run=1.5, depth=1.5)                            # 45 degrees, RMS part 2
@@ -67,7 +67,8 @@ def in_turns(s, d):
     return (np.abs(d - np.where(s % 6 < 3, 0.0, 0.35)) < 0.06) & (s % 3 < 2.6) & (s > 10) & (s < 40)
 
 
-@pytest.mark.parametrize("mark", [winding, taper, chevrons, teeth, in_turns, zigzag(20, 22.6, 1.0, 1.5, 1.5)],
+@pytest.mark.parametrize("mark", [between(10, 60, winding), between(10, 40, taper), between(20, 34, chevrons), between(20, 30, teeth),
+                                  between(10, 40, in_turns), zigzag(20, 22.6, 1.0, 1.5, 1.5)],
                          ids=["winding", "taper", "chevrons", "teeth", "dashes in turns", "two legs"])
 @pytest.mark.parametrize("density", [1200, 4000])
 def test_what_turns_otherwise_is_no_zigzag_line(mark, density):

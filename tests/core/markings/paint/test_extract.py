@@ -123,6 +123,26 @@ def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_a
     assert len(np.unique(found.s[on_line] // 0.5)) >= 78
 
 
+@pytest.mark.parametrize("darker", [3.0, 4.0])
+def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_runs_from_the_sun_into_the_shade_is(tmp_path, darker):
+    line, grain = strip(5, 55, 1.0, 1.15), gaussian_filter(np.random.default_rng(2).normal(size=(3100, 800)), 2.0)
+
+    def lit(s, d):
+        """Sun before and behind a row of trees; below them flecks, and the gap between two cars."""
+        flecks = np.any([(s - along) ** 2 + (d - across) ** 2 < 0.3**2 for along, across in ((25, -1), (31, -2), (34, 2.5), (41, -1.5))], axis=0)
+        return (s < 20) | (s > 45) | flecks | ((np.abs(s - 37.5) < 0.2) & (np.abs(d + 2) < 0.9))
+
+    def level(s, d):
+        rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
+        return (1.0 + rough) / np.where(lit(s, d), 1.0, darker)
+
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    found = found_on(records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0), tmp_path)
+    on_line = strip(4.9, 55.1, 0.95, 1.2)(found.s, found.d)
+    assert on_line.mean() > 0.98
+    assert len(np.unique(found.s[on_line] // 0.5)) >= 98
+
+
 def test_a_line_along_the_rim_of_a_patch_is_paint(tmp_path):
     line = strip(20, 50, 1.0, 1.15)
     found = found_on(street(FRAME, [line], level=lambda s, d: np.where((s > 30) & (s < 36) & (d > -2) & (d < 1), 1.35, 1.0)), tmp_path)

@@ -20,7 +20,7 @@ def led(height, beside=0.0, turned=0.0, **options):
     z[shapely.contains_xy(shapely.box(-9, 3.5, TIP, 30), x, y)] += 0.10 - height
     raster = averaged(ground_raster(x, y, z, 0.05), 0.05)
     ends = FollowedEnds(*np.array([[TIP, 3.5 + beside, 0.0, np.cos(turned), np.sin(turned), -1.0, np.nan, 0]]).T)
-    found, = led_on(raster, ends)
+    found = led_on(raster, ends)
     return found, shapely.distance(shapely.points(found.x, found.y), shapely.boundary(area))
 
 

@@ -217,7 +217,7 @@ def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
     assert len(bridged) == 1
     assert (bridged[0][:, 0].min(), bridged[0][:, 0].max()) == pytest.approx(hidden, abs=1.0)
     assert np.abs(bridged[0][:, 1] - HALF).max() <= 0.2
-    assert "bridged" not in found(survey, max_gap=3.0).status
+    assert "bridged" not in found(survey, max_gap=2.5).status
 
 
 def test_behind_a_vehicle_it_is_bridged_too_where_a_curb_begins_soon_after():
@@ -260,7 +260,7 @@ def test_a_longer_gap_is_bridged_where_both_sides_of_it_lie_in_one_line(bend):
     lines = behind_a_lorry(half)
     bridge, = (places for status, places in lines if status == "bridged")
     assert np.ptp(bridge[:, 0]) > 18.0 and np.abs(bridge[:, 1] - half(bridge[:, 0])).max() <= 0.2
-    assert "bridged" not in [status for status, _ in behind_a_lorry(half, max_gap=8.0)]
+    assert "bridged" not in [status for status, _ in behind_a_lorry(half, max_gap=5.0)]
 
 
 def test_a_longer_gap_in_which_the_road_widens_is_not_bridged():

@@ -5,7 +5,8 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
+from lanewright.core.survey.store.columns import Columns
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.road_points import columns_of_roads
 from lanewright.core.survey.store.section_store import SectionStore
 
@@ -32,7 +33,7 @@ def road():
 
 def test_the_columns_of_a_road_are_those_of_its_sections(road):
     whole = columns_of_roads(road, [0])
-    joined = join_columns([road.section(0, number) for number in road.sections(0)], SURVEY_POINT)
+    joined = Columns.concatenate([road.section(0, number) for number in road.sections(0)], SURVEY_POINT)
     assert len(whole) == len(joined) == road.count
     for name in ("s", "x", "time", "intensity"):
         np.testing.assert_array_equal(whole[name], joined[name])

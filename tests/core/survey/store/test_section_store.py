@@ -7,7 +7,8 @@ import weakref
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
+from lanewright.core.survey.store.columns import Columns
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore, canonical_order, opened_store
 
 
@@ -31,7 +32,7 @@ def filled(parts, **settings):
 def test_what_went_in_comes_out_sorted_along_the_road():
     made = records()
     store = filled(np.array_split(made, 7), section_length=20.0)
-    read = np.asarray(join_columns([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
+    read = np.asarray(Columns.concatenate([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
     assert store.count == len(read) == len(made)
     assert (np.diff(read["s"]) >= 0).all()
     np.testing.assert_array_equal(np.sort(read, order=["time", "x"]), np.sort(made, order=["time", "x"]))
