@@ -235,7 +235,8 @@ def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> 
             kept.append(strand)
             continue
         edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
-        for course in [trend.at, np.zeros_like] + ([] if edge is None else [edge]):
+        courses: list[Callable[[np.ndarray], np.ndarray]] = [trend.at, np.zeros_like, *([] if edge is None else [edge])]
+        for course in courses:
             expected = _robust_level(s[other_rows] - middle, d[other_rows] - course(s[other_rows]), np.minimum(weight[other_rows], 10.0))
             if abs(median(d[strand_rows] - course(s[strand_rows])) - expected) <= LINKS.max_stray_offset:
                 kept.append(strand)

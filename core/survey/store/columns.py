@@ -45,9 +45,9 @@ class Columns:
         return cls({name: np.ascontiguousarray(records[name]) for name in records.dtype.names or ()}, records.dtype, len(records))
 
     @classmethod
-    def concatenate(cls, parts: Sequence[Columns], dtype: Any) -> Columns:
-        """Several Columns one after the other; no parts give empty Columns of the dtype."""
-        parts = [cls.from_records(part) for part in parts if len(part)]
+    def concatenate(cls, records: Sequence[Columns | np.ndarray], dtype: Any) -> Columns:
+        """Several Columns, or structured records, one after the other; none give empty Columns of the dtype."""
+        parts = [cls.from_records(part) for part in records if len(part)]
         if len(parts) == 1:
             return parts[0]
         dtype = np.dtype(dtype)
