@@ -186,7 +186,7 @@ ROWS = (
          "islands:on_main_islands islands:are_replaced"),
         ("short islands", "classify:_long_islands", as_list),
         ("main curbs found in plan alone", "classify:_own_curb", gives(None), "sparse curb far from others"),
-        ("side streets with a hidden corner", "classify:_may_be_side_street", gives(False), "noisy scanner, parked car in the corner"),
+        ("side streets with a hidden corner", "classify:_has_opposite_curb", gives(False), "noisy scanner, parked car in the corner"),
         ("straight part of a side street", "classify:_straight_part", lambda own: slice(0, len(own)), "crossing"),
         ("views ahead and behind of noisy scanners", "detect:_averaged_views", lambda raster, *_: [raster], "many-beam scanner (Karlsruhe)",
          "detect:_averaged_views ground_raster:averaged"),

@@ -372,7 +372,7 @@ def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarr
     item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
     """
     columns, rank, edges, bars = item
-    edges = replace(edges, areas=[*edges.areas, *hatched_areas(bars)])
+    edges = replace(edges, areas=[*edges.areas, *map(shapely.get_coordinates, hatched_areas(bars))])
     strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
     lines, trend = _linked(strands, edges, settings)
     selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)

@@ -308,14 +308,14 @@ LOOKUP_STRETCH = 50.0   # derived: m of road whose edges are listed together
 
 @dataclass
 class EdgesBeside:
-    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, outlines by station and offset, m."""
+    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, (V, 2) outlines by station and offset, m."""
 
     edges: list[tuple[np.ndarray, np.ndarray]]
-    areas: Sequence[shapely.Polygon] = ()
+    areas: Sequence[np.ndarray] = ()   # plain values: what a process is sent, and a run is known by, holds no shapes
 
     @cached_property
     def _inner(self):
-        return shapely.STRtree(shapely.buffer(np.array(self.areas, object), -SELECTION.max_bar_end_offset))
+        return shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, self.areas)), -SELECTION.max_bar_end_offset))
 
     def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
         """Whether an island or a hatched area lies between two places, (2,) m each."""
@@ -367,12 +367,12 @@ def _islands(curbs):
 
 
 def _area_between(s, d):
-    """The area between the least and the greatest offset at each station, of (N,) places."""
+    """(V, 2) outline of the area between the least and the greatest offset at each station, of (N,) places."""
     stations, of = np.unique(s, return_inverse=True)
     low, high = np.full(len(stations), np.inf), np.full(len(stations), -np.inf)
     np.minimum.at(low, of, d)
     np.maximum.at(high, of, d)
-    return shapely.Polygon(np.r_[np.c_[stations, low], np.c_[stations, high][::-1]]) if len(stations) > 1 else shapely.Polygon()
+    return np.r_[np.c_[stations, low], np.c_[stations, high][::-1]] if len(stations) > 1 else np.empty((0, 2))
 
 
 # Lines that few tracks of the scan met: each track shows such a line at one place of its width.

@@ -130,7 +130,9 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
     side = _side(s, d, passes)
     if np.mean(np.isfinite(falls) & ~behind) >= RETURN.min_island_share:
         return CurbReturn(curb, s, d, side, "island", closed)
-    if _may_be_side_street(curb, s, line, behind, linked):
+    # nothing joins it to the main curb
+    if _length(curb.x, curb.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
+            and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, linked):
         straight = _straight_part(curb)
         return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")
     return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "", apart=True)
@@ -167,12 +169,6 @@ def _own_curb(chain, steps, falls, line, limits, passes, elsewhere):
 def _side(s, d, passes):
     """The side of the driven tracks on which a line mostly lies."""
     return "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
-
-
-def _may_be_side_street(curb, s, line, behind, linked):
-    """Is a line that nothing joins to the main curb the curb of a side street?"""
-    return _length(curb.x, curb.y) >= RETURN.min_isolated_length and np.mean(behind) <= RETURN.max_behind_share \
-        and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, linked)
 
 
 def _straight_part(curb):

@@ -138,8 +138,8 @@ def _nearest(ends, tree, place):
 #
 # At a crossing the curb is lowered to a centimetre or two, which no scan shows as a step. The edge of the road goes on there all the same: around a
 # corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. Where it has to go farther on the one
-# tangent than on the other it goes straight there first: a corner is an arc that two lines touch. A gap between two ends that point straight at
-# each other may as well be the mouth of a street, and stays open.
+# tangent than on the other it goes straight there first: a corner is an arc that two lines touch. Where two ends point straight at each other the
+# curb of a side street goes straight on. Of the road's own curb such a gap may as well be the mouth of a street, and stays open.
 
 
 @dataclass
@@ -210,17 +210,24 @@ def _angle(a, b):
 
 
 def _is_corner(tail, head):
-    """Do two ends bend towards each other about the sidewalk, which lies right of the way from tail to head?"""
+    """Do two ends bend towards each other about the sidewalk, which lies right of the way from tail to head, or lead straight to each other?"""
     chord = head.place - tail.place
     gap = float(np.hypot(*chord[:2]))
     if not EDGE.min_dropped_gap <= gap <= EDGE.max_dropped_gap or abs(chord[2]) > EDGE.max_end_step + EDGE.max_end_grade * gap:
         return False
     met = _tangents(tail, head)
     if met is None:
-        return False
+        # of a road's own curb the ground tells whether it goes straight on
+        return not tail.piece.kind == head.piece.kind == "main" and max(map(abs, _turns(tail, head))) < 0.5 * EDGE.min_arc_turn
     # seen from its own piece a head bends the other way
     return any(bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio
                for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)))
+
+
+def _turns(tail, head):
+    """Radians to the right from the way out of a tail to the straight way to a head, and from there to the way into the head."""
+    chord = (head.place - tail.place)[:2]
+    return -_angle(tail.out, chord), -_angle(chord, -head.out)
 
 
 def _tangents(tail, head):
@@ -228,9 +235,8 @@ def _tangents(tail, head):
 
     The radius is that of the largest arc in the gap that touches both directions. Nothing where they do not turn to the right, or too little or much.
     """
-    chord = (head.place - tail.place)[:2]
-    first, last = -_angle(tail.out, chord), -_angle(chord, -head.out)
-    turn, gap = first + last, float(np.hypot(*chord))
+    first, last = _turns(tail, head)
+    turn, gap = first + last, float(np.hypot(*(head.place - tail.place)[:2]))
     if min(first, last) <= 0.0 or not EDGE.min_arc_turn <= turn <= EDGE.max_arc_turn:
         return None
     before, behind = gap * np.sin(last) / np.sin(turn), gap * np.sin(first) / np.sin(turn)
@@ -239,7 +245,11 @@ def _tangents(tail, head):
 
 def _arc(tail, head, frame, number):
     """The piece of edge from a tail to a head: straight on as far as the one tangent is longer than the other, and the arc that both touch."""
-    turn, before, behind, radius = _tangents(tail, head)
+    way = (head.place - tail.place)[:2]
+    gap = float(np.hypot(*way))
+    met = _tangents(tail, head)
+    turn, before, behind, radius = met or (0.0, gap, 0.0, gap)
+    out = tail.out if met else way / gap
     straight, bend = max(before - behind, 0.0), radius * turn
     length = straight + bend + max(behind - before, 0.0)
     along = np.linspace(0.0, length, int(np.ceil(length / EDGE.arc_vertex_spacing)) + 1)
@@ -248,7 +258,7 @@ def _arc(tail, head, frame, number):
     sideways = radius * (1.0 - np.cos(angle))
     after_arc = np.maximum(along - straight - bend, 0.0)
     ahead, sideways = ahead + after_arc * np.cos(turn), sideways + after_arc * np.sin(turn)
-    plan = tail.place[:2] + ahead[:, None] * tail.out + sideways[:, None] * np.array([tail.out[1], -tail.out[0]])
+    plan = tail.place[:2] + ahead[:, None] * out + sideways[:, None] * np.array([out[1], -out[0]])
     vertices = np.round(np.c_[plan, tail.place[2] + along / length * (head.place - tail.place)[2]], COORDINATE_DECIMALS)
     vertices[0], vertices[-1] = tail.place, head.place
     piece = tail.piece

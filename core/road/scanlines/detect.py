@@ -158,8 +158,10 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
             for part in ("bottom", "top"):
                 measured = point_table(of_side[(of_side.part == part) & (of_side.status == "measured")], frame)
                 for points, status in _pieces(without_outliers(measured), hidden, max_gap):
-                    passes = frame.passes_sigma(road.number, points["s"])
-                    _draw(pieces, points, status, passes, road=road.number, side=side, part=part, chain=number)
+                    curve, passes = EdgeCurve(points), frame.passes_sigma(road.number, points["s"])
+                    for i, along, known in stretches_of(points, curve.t, curve.residual, status[1:] != status[:-1]):
+                        sigma = edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes))
+                        pieces.append(EdgePiece(curve.at(along), road.number, side, str(status[i]), number, part=part, sigma=sigma, **known))
                     number += 1
     lines = joined_pieces(pieces, frame, corners.crs)
     length = {part: lines.length[lines.part == part].sum() for part in ("bottom", "top")}
@@ -180,14 +182,6 @@ def _pieces(points, hidden, max_gap):
     breaks = np.flatnonzero(~joined) + 1
     parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
     return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= EDGE.min_edge_length]
-
-
-def _draw(pieces, points, status, passes, **fields):
-    """Add the pieces of one line."""
-    curve = EdgeCurve(points)
-    for i, along, known in stretches_of(points, curve.t, curve.residual, status[1:] != status[:-1]):
-        sigma = edge_sigma(along, curve.t, curve.residual, points["support"], passes=np.interp(along, curve.t, passes))
-        pieces.append(EdgePiece(curve.at(along), status=str(status[i]), sigma=sigma, **known, **fields))
 
 
 # Sources of normalized scanlines: sections of a survey, computed on demand, or a layer.

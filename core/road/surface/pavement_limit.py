@@ -14,10 +14,9 @@ import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 
 from ...common.parallel import check_cancelled
+from ...curves.robust import MAD_TO_SIGMA
 from ..weights import SURFACE
 from .ground_grid import SurfaceProfiles, known_median, median_about
-
-USUAL_QUANTILE, USUAL_SIGMAS = 0.5, 0.67   # derived: median of what the cells of the road are off themselves, and its sigmas in a normal distribution
 
 
 @dataclass(frozen=True)
@@ -175,7 +174,7 @@ def _off_course(values, sigma, seen):
         counted = off[:, k] if k < SURFACE.road_cells else np.clip(off[:, k], -SURFACE.other_sigmas, SURFACE.other_sigmas)
         level = level + gain * np.nan_to_num(counted) * total
         variance = variance * (1.0 - gain)
-    return off / np.fmax(1.0, _quantile(np.abs(off[:, :SURFACE.road_cells]), USUAL_QUANTILE) / USUAL_SIGMAS)
+    return off / np.fmax(1.0, MAD_TO_SIGMA * known_median(np.abs(off[:, :SURFACE.road_cells]), 1)[:, None])
 
 
 def _along(total, whole):
@@ -200,12 +199,6 @@ def _painted(brightness, sigma):
     bright = np.pad(bright, ((0, 0), (1, 1)))
     # a line covers the cells beside it in part
     return bright[:, :-2] | bright[:, 1:-1] | bright[:, 2:]
-
-
-def _quantile(values, share):
-    """(P, 1) quantile of every row without its NaN; NaN where it has nothing else."""
-    ordered, count = np.sort(values, axis=1), np.isfinite(values).sum(1)
-    return np.take_along_axis(ordered, np.rint(share * np.maximum(count - 1, 0)).astype(np.int64)[:, None], 1)
 
 
 # The path of an edge along the road through what every profile says, by dynamic programming.

@@ -45,15 +45,15 @@ class Columns:
         return cls({name: np.ascontiguousarray(records[name]) for name in records.dtype.names or ()}, records.dtype, len(records))
 
     @classmethod
-    def concatenate(cls, records: Sequence[Columns | np.ndarray], dtype: Any) -> Columns:
-        """Several Columns, or structured records, one after the other; none give empty Columns of the dtype."""
-        parts = [cls.from_records(part) for part in records if len(part)]
-        if len(parts) == 1:
-            return parts[0]
+    def concatenate(cls, parts: Sequence[np.ndarray | Columns], dtype: Any) -> Columns:
+        """Several records one after the other; no parts give empty Columns of the dtype."""
+        filled = [cls.from_records(part) for part in parts if len(part)]
+        if len(filled) == 1:
+            return filled[0]
         dtype = np.dtype(dtype)
-        if not parts:
+        if not filled:
             return cls({name: np.empty(0, dtype[name]) for name in dtype.names or ()}, dtype, 0)
-        return cls({}, dtype, sum(map(len, parts)), lambda name: np.concatenate([part[name] for part in parts]), parts=parts)
+        return cls({}, dtype, sum(map(len, filled)), lambda name: np.concatenate([part[name] for part in filled]), parts=filled)
 
     def __len__(self) -> int:
         return self._length

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 import shapely
 from clustered_streets import ClusteredStreet
+from lanewright.core.common.features import ROAD_EDGES, Features
+from lanewright.core.execution.phase import digest
 from lanewright.core.markings.lines.strands import edges_beside
+from lanewright.core.road.edges.road_edges import RoadEdges
 
 
 def widening(s):
@@ -75,3 +78,14 @@ def test_an_edge_leads_between_two_places_that_it_passes_and_between_no_others()
     assert beside[0].between((10.0, 4.6), (50.0, -3.0)) is None
     assert beside[1].between((10.0, 4.6), (50.0, 4.6)) is None
     assert edges_beside(None, [0])[0].between((10.0, 4.6), (50.0, 4.6)) is None
+
+
+def test_what_is_known_of_islands_bars_the_way_and_can_be_sent_to_another_process():
+    street, edges = ClusteredStreet(radius=None), Features("LineStringZ", list(ROAD_EDGES))
+    station = np.arange(20.0, 30.0, 0.5)
+    for side, offset in (("left", 2.0), ("right", -2.0)):
+        places = np.c_[street.place(station, np.full(len(station), offset)), np.full(len(station), 50.0)]
+        edges.add(shapely.linestrings(places), road=0, kind="island", edge="curb", status="measured", part="bottom", chain=1, side=side)
+    beside = edges_beside(RoadEdges.from_features(edges, street.frame), [0])[0]
+    assert beside.bar(np.array([15.0, 35.0]), np.zeros(2)) and not beside.bar(np.array([15.0, 35.0]), np.full(2, 6.0))
+    assert digest(beside) == digest(edges_beside(RoadEdges.from_features(edges, street.frame), [0])[0])

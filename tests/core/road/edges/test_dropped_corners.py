@@ -72,6 +72,13 @@ def test_a_crossing_that_begins_well_before_the_corner_is_a_line_and_an_arc(firs
     assert np.hypot(*(arc.vertices[:, None, :2] - [EAST, NORTH] - truth).transpose(2, 0, 1)).min(1).max() < 0.05
 
 
+def test_the_curb_of_a_side_street_goes_straight_on_across_a_dropped_crossing():
+    down = into_side_street()
+    arc, = arcs(edge(down[:20], "side_street"), edge(down[50:], "side_street", 1))
+    assert arc.length == pytest.approx(down[19, 1] - down[50, 1]) and np.abs(arc.vertices[:, 0] - EAST - 28.0).max() < 1e-3
+    assert arcs(edge(down[:20], "side_street"), edge(down[50:] + [1.0, 0.0], "side_street", 1)) == []
+
+
 @pytest.mark.parametrize("pieces", [
     (edge(along(2, 17)), edge(along(23, 40), number=1)),
     (edge(along(2, 17)), edge(into_side_street(), "side_street", 1)),
