@@ -36,7 +36,7 @@ def bright_spots(brightness: np.ndarray, rims: Sequence[RimBands],
     brightest = cv2.dilate(cv2.blur(np.nan_to_num(z), (3, 3)), np.ones((PHOTOGRAPHS.half_maximum_cells,) * 2, np.uint8))
     threshold = np.clip(brightest / 2, settings.lowest, settings.highest)
     bright = (z > threshold) & ~np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
-    light = _light(*(np.log(np.maximum(of, np.float32(1))) for of in (brightness, ground)), bright)
+    light = _light(np.log(np.maximum(brightness, np.float32(1))), np.log(np.maximum(ground, np.float32(1))), bright)
     return z, bright, partial(_are_paint, z, brightness / spread, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
 
 
