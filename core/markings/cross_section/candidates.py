@@ -22,7 +22,7 @@ USUAL_WIDTH = 0.10, 0.20   # source: m, of lines of usual breadth in all countri
 ENDS = SURFACE, PAVEMENT       # ends of the surface
 
 
-class MadeOf:
+class _MadeOf:
     """What has `made_of`, of SOLID ... BARE."""
 
     made_of: np.ndarray
@@ -39,7 +39,7 @@ class MadeOf:
 
 
 @dataclass
-class Boundaries(MadeOf):
+class Boundaries(_MadeOf):
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
     patterns : (R, K) what a row is made of at each place: lines are solid here and dashed there, and where the surface ends an edge of the pavement
@@ -152,7 +152,7 @@ def _made_of(pattern):
 
 
 @dataclass
-class Candidates(Rows, MadeOf):
+class Candidates(Rows, _MadeOf):
     """Boundaries by interval, from left to right; the first and the last stand for what lies outside."""
 
     first: np.ndarray   # (I,) stations of the grid that an interval begins and ends with
