@@ -105,7 +105,7 @@ def place_beside(road_map: RoadMap) -> str:
     if layer.providerType() != PROVIDER:
         return ""
     uri, output = QgsDataSourceUri(layer.source()), road_map.outputs[road_map.layers.index(layer)].lower()
-    table = f"{uri.table().removesuffix(output)}{TABLE}" if uri.table().endswith(output) else TABLE
+    table = f"{uri.table()[:-len(output)]}{TABLE}" if uri.table().lower().endswith(output) else TABLE
     place = QgsDataSourceUri(uri.connectionInfo(False))
     place.setDataSource(uri.schema(), table, "geom", "", "id")
     return place.uri(False)

@@ -15,13 +15,14 @@ from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import remaking, smart_pick
-from lanewright.desktop.review.corrections_layer import add_correction, changes_of, corrections_layers, corrections_of, new_corrections_layer
+from lanewright.desktop.review.corrections_layer import add_correction, changes_of, corrections_layers, corrections_of, new_corrections_layer, place_beside
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, output_of, place_layer, road_maps
 from lanewright.processing_provider.styling import second_reading
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsDataSourceUri,
     QgsFeature,
     QgsGeometry,
     QgsPointXY,
@@ -744,3 +745,11 @@ def test_what_a_colleague_has_corrected_since_is_not_in_the_map(at_first, tmp_pa
     theirs.dataProvider().changeAttributeValues({number: {theirs.fields().lookupField("decided_at"): later}})
     at_first._tell()
     assert "when it is made again" in at_first.kept.text()
+
+
+@pytest.mark.parametrize("table, beside", [("b12_road_edges", "b12_corrections"), ("B12_ROAD_EDGES", "B12_corrections"), ("Curbs", "corrections")])
+def test_corrections_of_a_map_in_postgis_lie_beside_its_tables(table, beside):
+    source = f"dbname='maps' host=server user='ada' key='id' table=\"Road's maps\".\"{table}\" (geom)"
+    layer = SimpleNamespace(providerType=lambda: "postgres", source=lambda: source)
+    uri = QgsDataSourceUri(place_beside(SimpleNamespace(vectors=[layer], layers=[layer], outputs=["ROAD_EDGES"])))
+    assert (uri.schema(), uri.table(), uri.geometryColumn(), uri.keyColumn(), uri.username()) == ("Road's maps", beside, "geom", "id", "ada")
