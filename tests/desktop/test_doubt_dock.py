@@ -15,7 +15,14 @@ from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import remaking, smart_pick
-from lanewright.desktop.review.corrections_layer import add_correction, changes_of, corrections_layers, corrections_of, new_corrections_layer, place_beside
+from lanewright.desktop.review.corrections_layer import (
+    add_correction,
+    changes_of,
+    corrections_layers,
+    corrections_of,
+    new_corrections_layer,
+    place_beside,
+)
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
 from lanewright.processing_provider.results.road_maps import clouds_lie_in, output_of, place_layer, road_maps
