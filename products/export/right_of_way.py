@@ -56,7 +56,7 @@ def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
 
     stated: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, known in source.attributes.items():
-        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows)):
+        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows and other != name)):
             stated[first].append(name)
     signs = {number: [name for name in named(row.get("lanes")) if ways.get(name)]
              for number, row in enumerate(source.signals.rows if source.signals else ()) if (row.get("country"), row.get("code")) in GIVE_WAY}

@@ -64,3 +64,13 @@ def test_a_priority_of_a_road_that_is_not_of_the_junction_is_a_finding(tmp_path)
     text = (tmp_path / "out.xodr").read_text(encoding="utf-8").replace("</junction>", '<priority high="999" low="1"/></junction>')
     found = check_opendrive(read_opendrive(written(tmp_path, text))).found
     assert [one.fault for one in found if "999" in one.text] == ["connection"]
+
+
+def test_nobody_waits_for_himself(tmp_path):
+    lanes = crossing()
+    low, high, *_ = turns(lanes)
+    layers = RoadMapSource(lanes, attributes={low: {"yields_to": f"{low},{high}"}, high: {"yields_to": high}})
+    (junction,) = as_roads(tmp_path, layers)[1].junctions
+    assert len(junction.priorities) == 1 and junction.priorities[0][0] != junction.priorities[0][1]
+    (pair,) = waiting(layers_of_lanelets(as_lanelets(tmp_path, layers)[1], CRS))
+    assert pair == (place(layers, low), place(layers, high))
