@@ -16,7 +16,7 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
-from ..markings.cross_section.weights import BARE, EDGE_LINE, HATCHING, SAME_LANE, SURFACE_END, UNPAINTED
+from ..markings.cross_section.weights import BARE, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import ALIGNMENT, TRACKS
@@ -43,7 +43,7 @@ def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: 
 
 
 def _as_elsewhere(track, boundaries, estimate):
-    """The track moved to where it was driven as along most of it, where one painted border leads far aside, or is of a hatched area.
+    """The track moved to where it was driven as along most of it, where one painted border leads far aside.
 
     That border is then of what opens or closes beside the lane, which goes on beside the other one, as wide as elsewhere. This is as rare as a border
     without a line, but a drive farther off the middle than vehicles scatter is rarer.
@@ -52,13 +52,14 @@ def _as_elsewhere(track, boundaries, estimate):
     beside, count = _driven_beside(track, boundaries.s, estimate)
     room, painted = track.width - np.median(track.width), (sides >= 0).all(axis=0) & boundaries.bounding[sides].all(axis=0)
     unlike, usual = painted & (np.abs(room) > ALIGNMENT.max_parallel_deviation), (count > 0) & (np.abs(room) < SAME_LANE)
-    cause, share = (track.width > NEUTRAL.widest_lane) | (boundaries.made_of[sides] == HATCHING).any(axis=0), np.zeros(len(track))
+    share = np.zeros(len(track))
     beside -= np.median(beside[usual]) if usual.any() else beside
     for first, end in mask_runs(unlike):
-        if cause[first:end].any():
+        if track.width[first:end].max() > NEUTRAL.widest_lane:
             middle = np.exp(weights.bare[EDGE_LINE] - 0.5 * (beside[first:end] / weights.track_sigma) ** 2)
             share[first:end] = (count[first:end] > 0) / (1 + middle + weights.odd_width * weights.track_sigma / weights.driven_sigma)
-    return replace(track, d=track.d + share * np.clip(beside, -np.abs(room) / 2, np.abs(room) / 2), width=track.width - share * room)
+    moved = share * np.clip(beside, -np.abs(room) / 2, np.abs(room) / 2)
+    return replace(track, d=track.d + moved, width=track.width - share * room, aside=track.aside + moved)
 
 
 def _to_its_ends(track, boundaries):

@@ -36,7 +36,7 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
-from .selection import SelectedLine, hatched_areas, hatching_bars, same_dash_pattern, select_lines
+from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
 from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
@@ -372,7 +372,6 @@ def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarr
     item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
     """
     columns, rank, edges, bars = item
-    edges = replace(edges, areas=[*edges.areas, *map(shapely.get_coordinates, hatched_areas(bars))])
     strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
     lines, trend = _linked(strands, edges, settings)
     selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)

@@ -70,7 +70,7 @@ def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, end
 
     Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope; those of another carriageway may lead
     away. Or both keep their distance from one edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That
-    last view is of gaps alone. No line leads across an island or a hatched area.
+    last view is of gaps alone. No line leads across an island.
     """
     middle, reach = (before.s + after.s) / 2, min(before.reach, after.reach)
     s = np.array([before.s, after.s])

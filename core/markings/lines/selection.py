@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
@@ -39,12 +38,6 @@ def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
     """(K, 4) first and last station, least and greatest offset of the bars of hatched areas of a road."""
     extents = markings.extent[(markings.road == road) & (markings.kind.astype(str) == "hatch")]
     return extents[extents[:, 1] - extents[:, 0] < SELECTION.max_bar_length]
-
-
-def hatched_areas(bars: np.ndarray) -> np.ndarray:
-    """The areas, by station and offset, that bars as of `hatching_bars` follow each other in."""
-    boxes = shapely.union_all(shapely.box(bars[:, 0], bars[:, 2], bars[:, 1], bars[:, 3]))
-    return shapely.get_parts(shapely.buffer(shapely.buffer(boxes, SELECTION.max_bar_pitch / 2), -SELECTION.max_bar_pitch / 2))
 
 
 def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),

@@ -307,7 +307,7 @@ LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along:
 
 @dataclass
 class EdgesBeside:
-    """The edges along one road: the stations and offsets of each; and the islands and hatched areas, (V, 2) outlines by station and offset, m."""
+    """The edges along one road: the stations and offsets of each; and the islands, (V, 2) outlines by station and offset, m."""
 
     edges: list[tuple[np.ndarray, np.ndarray]]
     areas: Sequence[np.ndarray] = ()   # plain values: what a process is sent, and a run is known by, holds no shapes
@@ -317,7 +317,7 @@ class EdgesBeside:
         return shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, self.areas)), -SELECTION.max_bar_end_offset))
 
     def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
-        """Whether an island or a hatched area lies between two places, (2,) m each."""
+        """Whether an island lies between two places, (2,) m each."""
         return bool(len(self.areas)) and len(self._inner.query(shapely.linestrings(s, d), predicate="intersects")) > 0
 
     @cached_property

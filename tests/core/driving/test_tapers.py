@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
+from lanewright.core.common.features import ROAD_EDGES, Features
 from lanewright.core.driving.lane_track import MEASURED, LaneTrack
 from lanewright.core.driving.lanes import laid_out
 from lined_streets import EAST, HEIGHT, Street
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString
 
 LENGTH = 200.0
 
@@ -77,17 +77,6 @@ def test_where_lines_part_farther_than_lanes_are_built_wide_a_lane_lies_where_it
     assert np.ptp(driven[:, 0]) > 105.0
     np.testing.assert_allclose(driven[:, 1], 1.75, atol=0.2)
     np.testing.assert_allclose(driven[driven[:, 0] > 90.0, 1], 1.75, atol=0.1)
-
-
-def test_a_lane_goes_on_as_it_was_driven_where_the_border_of_a_hatched_area_closes_in_on_it():
-    """Between 80 and 120 m an area of a metre takes half a metre of the lane on either side of the centre line."""
-    street = Street(length=LENGTH, vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge").paint(0.0, 5.0, 80.0).paint(0.0, 120.0, 195.0)
-    bars = Features("PolygonZ", MARKINGS)
-    for s in np.arange(80.5, 120.0, 2.0):
-        corners = street.places([s, s + 0.5, s + 0.5, s], [-0.5, -0.5, 0.5, 0.5])
-        bars.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "hatch", "use": "other"})
-    driven = [street.offsets(line) for line, row in street.lanes(markings=bars)[0] if row["direction"] == 1]
-    np.testing.assert_allclose(np.concatenate(driven), -1.75, atol=0.15)
 
 
 def test_a_broad_lane_that_divides_into_two_is_driven_in_its_middle_up_to_there():

@@ -5,7 +5,6 @@ import pytest
 import shapely
 from lanewright.core.markings.lines.fit import MarkingLineSettings
 from lanewright.core.markings.lines.linking import CommonTrend, assigned_links, link_lines
-from lanewright.core.markings.lines.selection import hatched_areas
 from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, Strand
 
 
@@ -53,10 +52,3 @@ def test_the_last_dash_is_of_its_line_where_the_lines_of_the_other_carriageway_l
 def test_a_line_ends_at_an_island_and_goes_on_past_one_that_lies_beside_it(aside, lines):
     island = EdgesBeside([], [shapely.get_coordinates(shapely.box(13.0, aside - 0.8, 19.0, aside + 0.8))])
     assert len(linked([strand(0.0, 12.0, np.zeros_like), strand(20.0, 40.0, np.zeros_like)], island)) == lines
-
-
-def test_a_line_ends_at_the_tip_of_a_hatched_area_and_the_lines_along_its_sides_go_on():
-    bars = np.array([(s, s + 1.5, -1.0, 1.0) for s in np.arange(13.0, 19.0, 2.0)])
-    edges = EdgesBeside([], [shapely.get_coordinates(area) for area in hatched_areas(bars)])
-    sides = [strand(first, last, lambda s, side=side: side + 0.0 * s) for side in (-1.1, 0.0, 1.1) for first, last in ((0.0, 12.0), (20.0, 40.0))]
-    assert sorted(round(float(line.strands[0].d[0]), 1) for line in linked(sides, edges)) == [-1.1, 0.0, 0.0, 1.1]
