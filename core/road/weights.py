@@ -509,7 +509,8 @@ class EDGE:
     min_hidden_share: float = 0.5   # share of a gap that must be hidden for a bridge of a pavement edge or of a boundary line
     hidden_curb_share: float = 0.33   # the same of a curb: where one goes on unseen, two fifths and more are hidden, at an opening next to nothing
     gap_end_allowance: float = 1.0   # m of a gap, half at each end, that need not be hidden
-    in_line_gap_factor: float = 3.0   # times the longest bridged gap that an edge may be hidden whose two parts lie in one line
+    in_line_gap_factor: float = 3.0   # times the longest bridged gap that an edge may be hidden whose two parts lie in one line,
+    max_open_part: float = 5.0   # m of such a gap in which nothing hides the curb: along rows of parked cars it was 3 m at most
     max_edge_skew: float = 1.0   # m across per m along of a joined edge
     max_edge_jump: float = 0.25   # m across that two joined points may differ in any case
     bridge_spacing: float = 3.0   # m, about, between places on a line across a gap

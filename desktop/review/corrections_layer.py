@@ -105,7 +105,7 @@ def place_beside(road_map: RoadMap) -> str:
     if layer.providerType() != PROVIDER:
         return ""
     uri, output = QgsDataSourceUri(layer.source()), road_map.outputs[road_map.layers.index(layer)].lower()
-    table = f"{uri.table().removesuffix(output)}{TABLE}" if uri.table().endswith(output) else TABLE
+    table = f"{uri.table()[:-len(output)]}{TABLE}" if uri.table().lower().endswith(output) else TABLE
     place = QgsDataSourceUri(uri.connectionInfo(False))
     place.setDataSource(uri.schema(), table, "geom", "", "id")
     return place.uri(False)
@@ -211,10 +211,10 @@ def corrections_of(layer: QgsVectorLayer | None, pieces: Sequence[DoubtfulPiece]
         line = feature.geometry()
         line.transform(QgsCoordinateTransform(layer.crs(), crs, QgsProject.instance()))
         for number in index.intersects(line.boundingBox().buffered(MOVED)):
-            piece, begins = pieces[number], (feature["road"], feature["station_m"])
+            piece, begins = pieces[number], tuple(map(feature.attributeMap().get, ("road", "station_m")))
             is_of_kind = feature["target"] == (piece.target or piece.kind) and (feature["action"] == SEEN) == (not piece.target)
             if is_of_kind and (line.hausdorffDistance(piece.line) < SAME_PLACE or (
-                    feature["action"] == "move" and NULL not in begins and begins[0] == piece.road
+                    feature["action"] == "move" and not {None, NULL} & {*begins} and begins[0] == piece.road
                     and abs(begins[1] - piece.station) < SAME_PLACE and line.distance(piece.line) < MOVED)):
                 made[number] = feature
     return made
@@ -281,11 +281,20 @@ def changed_at(layer: QgsVectorLayer, target: str, unmade: bool) -> datetime | N
 
     unmade : no run has made them yet, so that a row of which nothing is known counts as made now
     """
-    times = [when for when, of, *_ in map(str.split, changes_of(layer)) if of == target]
-    if times:
-        return datetime.fromisoformat(times[-1])
-    return datetime.now(timezone.utc) if unmade and any(
-        row["target"] == target and row["action"] != SEEN for row in layer.getFeatures()) else None
+    times = [datetime.fromisoformat(when) for when, of, *_ in map(str.split, changes_of(layer)) if of == target]
+    rows = [row for row in layer.getFeatures() if row["target"] == target and row["action"] != SEEN]
+    if rows and unmade and not times:
+        return datetime.now(timezone.utc)
+    ours = set(written_here(layer))   # of these the changes tell
+    return max([*times, *(when for row in rows if row.id() not in ours and (when := _decided_at(row)) is not None)], default=None)
+
+
+def _decided_at(row):
+    """When somebody wrote a row in the window; None of one that was written by hand."""
+    try:
+        return datetime.fromisoformat(f"{row.attributeMap().get('decided_at')}+00:00")
+    except ValueError:
+        return None
 
 
 def _delete(layer, ids):

@@ -524,7 +524,10 @@ class DoubtDock(QDockWidget):
         """Take up QGIS's vertex tool on the corrections; where it is taken up already, keep what was dragged."""
         layer = self.layer
         if layer.isEditable():
-            layer.commitChanges()
+            if not layer.commitChanges():   # the vertices can still be dragged and kept
+                say(self.iface, tr("The correction was not kept in {place}: {problem}").format(
+                    place=place_of(layer), problem="; ".join(layer.commitErrors())), Qgis.MessageLevel.Critical)
+                return
             self.hint.hide()
             self.iface.actionPan().trigger()
             self.corrected()
@@ -552,9 +555,15 @@ class DoubtDock(QDockWidget):
         path = ask_for_file(self, self.road_map, tr("Report of the review"), f"{tr('Review')} {self.road_map.survey}.html", "HTML (*.html)")
         if path:
             pieces = [piece for place in doubts_of(self.road_map) for piece in place.pieces]
-            Path(path).write_text(review_report(self.road_map.survey, "" if self.layer is None else place_of(self.layer), *review_of(
-                self.layer, pieces, self.road_map.vectors[0].crs())), encoding="utf-8")
-            open_file(self.iface, path)
+            page = review_report(self.road_map.survey, "" if self.layer is None else place_of(self.layer), *review_of(
+                self.layer, pieces, self.road_map.vectors[0].crs()))
+            try:
+                Path(path).write_text(page, encoding="utf-8")
+            except OSError as problem:
+                say(self.iface, tr("{path} cannot be written: {reason}. Close the program that holds it, or choose another file.",
+                                   path=path, reason=problem.strerror), Qgis.MessageLevel.Critical)
+            else:
+                open_file(self.iface, path)
 
     def _tell(self):
         """How many corrections there are, and what to do with them."""

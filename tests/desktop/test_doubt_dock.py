@@ -2,7 +2,10 @@
 
 import os
 import re
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
+from datetime import datetime, timedelta, timezone
 from types import SimpleNamespace
 from uuid import uuid4
 
@@ -12,12 +15,30 @@ from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
 from lanewright.desktop.review import remaking, smart_pick
-from lanewright.desktop.review.corrections_layer import add_correction, corrections_layers, corrections_of, new_corrections_layer
+from lanewright.desktop.review.corrections_layer import (
+    add_correction,
+    changes_of,
+    corrections_layers,
+    corrections_of,
+    new_corrections_layer,
+    place_beside,
+)
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
-from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
+from lanewright.processing_provider.results.road_maps import clouds_lie_in, output_of, place_layer, road_maps
 from lanewright.processing_provider.styling import second_reading
-from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsProviderRegistry, QgsRectangle, QgsSettings, QgsVectorLayer
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsDataSourceUri,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsProviderRegistry,
+    QgsRectangle,
+    QgsSettings,
+    QgsVectorLayer,
+)
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QAction, QImage
@@ -665,3 +686,77 @@ def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_lon
     assert opened == [str(page)]
     assert "|lane|0|0|1|8|0|0|0|0|0|" in cells and "|edge|1|8|0|0|0|0|1|8|1|" in cells and "|Together|1|8|1|8|0|0|1|8|1|" in cells
     assert "|0|80.0|8.0|1.2|Road edge" in cells, cells
+
+
+def test_a_map_that_was_removed_while_it_waited_is_not_made_again(at_first, runs):
+    at_first.accept_button.click()
+    at_first.run_button.click(), at_first.run_button.click()
+    project = QgsProject.instance()
+    project.removeMapLayers([layer.id() for layer in at_first.road_map.layers])
+    runs[0].ended(False)
+    assert len(runs) == 1 and not at_first.remaking.isVisible()
+
+
+def test_stations_of_what_is_made_again_are_metres_on_a_map_in_feet(at_first, runs):
+    at_first.list.setCurrentRow(1)
+    at_first.delete_button.click()
+    for layer in (*at_first.road_map.vectors, at_first.layer):
+        layer.setCrs(QgsCoordinateReferenceSystem("EPSG:2263"))   # of 8 feet of lane from 14 m on
+    assert remaking.stretches(at_first.road_map, changes_of(at_first.layer), at_first.layer.crs()) == ["road 0, 14–16 m"]
+
+
+def test_corrections_without_road_and_station_do_as_well(at_first):
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=action:string&field=target:string", "By hand", "memory")
+    row = QgsFeature(layer.fields())
+    row.setAttributes(["move", "edge"])
+    row.setGeometry(QgsGeometry.fromPolylineXY([QgsPointXY(EAST + 10, NORTH - 1), QgsPointXY(EAST + 18, NORTH + 1)]))
+    layer.dataProvider().addFeatures([row])
+    layer.updateExtents()
+    QgsProject.instance().addMapLayer(layer)
+    at_first.go(at_first.road_map, -1)
+    assert at_first.layer.name() == "By hand" and at_first.place.station == 80
+
+
+def test_vertices_that_cannot_be_kept_are_not_lost_without_a_word(at_first, tmp_path):
+    at_first.accept_button.click()
+    with closing(sqlite3.connect(tmp_path / "corrections.gpkg")) as table:
+        table.execute("CREATE TRIGGER locked BEFORE UPDATE ON corrections BEGIN SELECT RAISE(ABORT, 'locked'); END")
+        table.commit()
+    layer = at_first.layer
+    layer.startEditing()
+    layer.moveVertex(EAST + 19, NORTH + 1, next(layer.getFeatures()).id(), 1)
+    at_first.vertex_button.click()
+    assert layer.isEditable() and "not kept" in at_first.iface.messageBar().currentItem().text()
+    layer.rollBack()
+
+
+def test_a_report_that_cannot_be_written_says_so(at_first, tmp_path, monkeypatch):
+    monkeypatch.setattr("lanewright.desktop.review.doubt_dock.ask_for_file", lambda *names: str(tmp_path / "gone" / "review.html"))
+    at_first.write_report()
+    assert "review.html" in at_first.iface.messageBar().currentItem().text()
+
+
+def test_what_a_colleague_has_corrected_since_is_not_in_the_map(at_first, tmp_path):
+    project, other = QgsProject.instance(), QgsProject()
+    at_first.accept_button.click()
+    at_first.layer.setCustomProperty("lanewright/changes", [])
+    run = run_at(9, CORRECTIONS="corrections.gpkg")
+    for layer in at_first.road_map.layers:
+        place_layer(layer, project, output_of(layer), replace(run, provenance=replace(run.provenance, ended=datetime.now(timezone.utc))))
+    at_first.road_map = road_maps(project)[0]
+    at_first._tell()
+    assert "in this map" in at_first.kept.text()
+    theirs = new_corrections_layer(other, str(tmp_path / "corrections.gpkg"), at_first.layer.crs(), "B12")
+    number = add_correction(theirs, at_first.places[1].pieces[0].line, theirs.crs(), action="delete", target="edge")
+    later = f"{datetime.now(timezone.utc) + timedelta(seconds=5):%Y-%m-%d %H:%M:%S}"
+    theirs.dataProvider().changeAttributeValues({number: {theirs.fields().lookupField("decided_at"): later}})
+    at_first._tell()
+    assert "when it is made again" in at_first.kept.text()
+
+
+@pytest.mark.parametrize("table, beside", [("b12_road_edges", "b12_corrections"), ("B12_ROAD_EDGES", "B12_corrections"), ("Curbs", "corrections")])
+def test_corrections_of_a_map_in_postgis_lie_beside_its_tables(table, beside):
+    source = f"dbname='maps' host=server user='ada' key='id' table=\"Road's maps\".\"{table}\" (geom)"
+    layer = SimpleNamespace(providerType=lambda: "postgres", source=lambda: source)
+    uri = QgsDataSourceUri(place_beside(SimpleNamespace(vectors=[layer], layers=[layer], outputs=["ROAD_EDGES"])))
+    assert (uri.schema(), uri.table(), uri.geometryColumn(), uri.keyColumn(), uri.username()) == ("Road's maps", beside, "geom", "id", "ada")

@@ -101,9 +101,11 @@ def _pieces(rows, max_gap):
     covered = CURBS.hidden_point_spacing * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
     bridged = (gap > CURBS.max_joined_gap) & (gap <= EDGE.in_line_gap_factor * max_gap) \
         & (covered >= EDGE.hidden_curb_share * (gap - EDGE.gap_end_allowance)) & (across <= EDGE.max_edge_jump + 0.1 * gap)
-    # the longer a gap is, the better both parts must show the direction of one line
+    # the longer a gap is, the better both parts must show the direction of one line; a bus in the mouth of a street hides a part of the mouth
     s = np.ascontiguousarray(points["s"])
-    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap)) if line_across(points, s, k)[0] * gap[k] > EDGE.max_edge_jump]] = False
+    for k in np.flatnonzero(bridged & (gap > max_gap)):
+        open_part = np.diff(np.r_[start[k], hidden[(hidden > start[k]) & (hidden < end[k])], end[k]]).max()
+        bridged[k] = line_across(points, s, k)[0] * gap[k] <= EDGE.max_edge_jump and open_part <= EDGE.max_open_part
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     inferred, low = points["status"] == "bridged", is_lowered(points, s)
     # what the ground shows in a gap may be a curb of full height as well; behind a lowered one the ramp to the sidewalk counts with its step

@@ -79,6 +79,12 @@ def test_the_curb_of_a_side_street_goes_straight_on_across_a_dropped_crossing():
     assert arcs(edge(down[:20], "side_street"), edge(down[50:] + [1.0, 0.0], "side_street", 1)) == []
 
 
+def test_no_edge_leads_straight_across_the_road_from_one_street_into_the_one_opposite():
+    before, behind = edge(np.c_[np.full(20, 28.0), np.linspace(-12, -3.6, 20)], "side_street"), \
+        replace(edge(np.c_[np.full(20, 28.0), np.linspace(3.6, 12, 20)], "side_street", 1), side="left")
+    assert arcs(edge(along(2, 17)), before, behind) == []
+
+
 @pytest.mark.parametrize("pieces", [
     (edge(along(2, 17)), edge(along(23, 40), number=1)),
     (edge(along(2, 17)), edge(into_side_street(), "side_street", 1)),

@@ -202,6 +202,13 @@ def test_a_long_gap_in_which_a_bend_begins_is_bridged_where_the_curb_goes_on_bes
         assert shapely.distance(shapely.points(true), found).max() < 0.12
 
 
+@pytest.mark.parametrize("mouth, bus", [(22.0, 9.0), (35.0, 14.0)])
+def test_the_mouth_of_a_street_is_not_bridged_where_a_bus_hides_a_part_of_it(mouth, bus):
+    stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + mouth, 90, 1.0)]
+    edges = fit_road_edges(curb_points(stations, hidden=np.arange(19.5 + (mouth - bus) / 2, 19 + (mouth + bus) / 2, 0.5)), straight_frame())
+    assert [r["status"] for r in edges.rows] == ["measured", "measured"]
+
+
 def test_a_short_piece_of_curb_does_not_bend_the_line_across_a_long_gap():
     # its three points lie oblique by centimetres, which would be decimetres within the gap
     stations = np.r_[np.arange(0, 20, 1.0), 23.0, 23.3, 23.6, np.arange(40, 60, 1.0)]
