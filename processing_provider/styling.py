@@ -19,6 +19,7 @@ from qgis.core import (
     QgsEditorWidgetSetup,
     QgsFillSymbolLayer,
     QgsGeometry,
+    QgsGeometryGeneratorSymbolLayer,
     QgsGraduatedSymbolRenderer,
     QgsMapLayer,
     QgsMapLayerStyle,
@@ -35,6 +36,7 @@ from qgis.core import (
     QgsRuleBasedLabeling,
     QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
+    QgsSingleSymbolRenderer,
     QgsSymbol,
     QgsUnitTypes,
     QgsVectorLayer,
@@ -282,7 +284,8 @@ def _name_figures(layer):
             if sum(row.geometry().area() for row in inside) > LEAST_FIGURE / metres**2:
                 named.append(max(inside, key=lambda row: row.geometry().distance(middle)).id())
     settings, words = rule.settings(), _in_words("class")
-    sign, laid, _ = layer.renderer().symbol().symbolLayer(0).geometryExpression().partition(LAID)
+    drawn = layer.renderer().symbol().symbolLayer(0) if isinstance(layer.renderer(), QgsSingleSymbolRenderer) else None
+    sign, laid, _ = (drawn.geometryExpression() if isinstance(drawn, QgsGeometryGeneratorSymbolLayer) else "").partition(LAID)
     ways = ", ".join(f"'{retold(way)}'" for way in WAYS)
     settings.fieldName = f"if(\"class\" = 'arrow', {sign}THEN array({ways})[array_find(@fits, array_max(@fits)) % {len(WAYS)}] " \
                          f"ELSE '' END))))) END, {words})" if laid else words

@@ -394,7 +394,7 @@ class _Pages:
         job = QgsMapRendererCustomPainterJob(settings, painter)
         job.renderSynchronously()
         painter.end()
-        figures = " · ".join(label.labelText for label in job.takeLabelingResults().allLabels())
+        figures = " · ".join(label.labelText for label in job.takeLabelingResults().allLabels() if not label.isUnplaced)
         rows = [("", tr("Axis with stations"))] + [(figure, text) for figure, text, pattern in (
             ("R 85", tr("Radius (m)"), r"R \d"), ("3.40", tr("Width of the lane (m)"), r"(^|· )\d+[.,]\d\d( ·|$)"),
             ("50 km/h", tr("Design speed"), r"\d km/h"), ("12 cm", tr("Height of the curb"), r"\d cm")) if re.search(pattern, figures)]

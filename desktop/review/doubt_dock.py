@@ -106,7 +106,7 @@ class DoubtDock(QDockWidget):
         self.order = choices(((tr("The most doubtful first"), True), (tr("Along the road"), False)), self._begin_again)
         settings = QgsSettings()
         self.kinds.setCurrentIndex(max(self.kinds.findData(settings.value(KIND, "")), 0))
-        self.shortest = QDoubleSpinBox(prefix=tr("From "), suffix=" m", decimals=0, maximum=999.0, value=settings.value(LENGTH, 0.0, type=float),
+        self.shortest = QDoubleSpinBox(prefix=tr("At least "), suffix=" m", decimals=0, maximum=999.0, value=settings.value(LENGTH, 0.0, type=float),
                                        keyboardTracking=False, toolTip=tr("Shorter pieces are passed over, but not warnings and ends of lanes"))
         self.shortest.valueChanged.connect(lambda metres: self._begin_again())
         self.undecided = QCheckBox(tr("Only what is not done"))

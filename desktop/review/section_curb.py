@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -78,12 +77,20 @@ class CurbLine:
 
     def _goes_on(self):
         """Whether what was found is the next of the line: in a section near one of its ends, and farther along the road than across."""
-        line, section = self.lines[-1] if self.lines else [], self.dock.section
+        line, section, most = self.lines[-1] if self.lines else [], self.dock.section, NEXT / metres_of(self.dock.road_map)
         steps = [(self.face.places[0] - face.places[0])[:2] for face in line[:1] + line[-1:]]
-        return any(abs(step @ section.left) <= abs(step @ section.ahead) <= NEXT for step in steps)
+        return any(abs(step @ section.left) <= abs(step @ section.ahead) <= most for step in steps)
 
     def _row_of(self, layer, line):
-        return correction_at(layer, _geometry(line), self._crs, "edge")
+        return correction_at(layer, self._geometry(line), self._crs, "edge")
+
+    def _geometry(self, line):
+        """The line through the bottoms of faces; through one alone it runs along the curb there."""
+        places = np.array([face.places[0] for face in line])
+        if len(line) == 1:
+            angle, half = np.radians(line[0].direction), ALONE / 2 / metres_of(self.dock.road_map)
+            places = places + half * np.array([[-1.0], [1.0]]) * (np.sin(angle), np.cos(angle), 0.0)
+        return QgsGeometry(QgsLineString(*places.T.tolist()))
 
     @property
     def _crs(self):
@@ -92,7 +99,7 @@ class CurbLine:
     def _write(self, layer, former):
         line = self.lines[-1]
         try:
-            add_correction(layer, _geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line),
+            add_correction(layer, self._geometry(line), self._crs, former, action="draw", target="edge", note=_evidence(line),
                            height_m=round(float(np.median([face.height for face in line])), 3))
         except RoadExtractionError as problem:   # the disk is full, or the database is gone
             self.lines.pop()
@@ -103,15 +110,6 @@ class CurbLine:
 
 def _apart(face, other):
     return float(np.hypot(*(face.places[0] - other.places[0])[:2]))
-
-
-def _geometry(line: Sequence[Face]) -> QgsGeometry:
-    """The line through the bottoms of faces; through one alone it runs along the curb there."""
-    places = np.array([face.places[0] for face in line])
-    if len(line) == 1:
-        angle = np.radians(line[0].direction)
-        places = places + ALONE / 2 * np.array([[-1.0], [1.0]]) * (np.sin(angle), np.cos(angle), 0.0)
-    return QgsGeometry(QgsLineString(*places.T.tolist()))
 
 
 def _evidence(line):

@@ -80,9 +80,11 @@ class SectionDock(QDockWidget):
         if self.road_map is None or not self.road_map.has_any(removed):
             return
         self._stop_reading()
-        self.section = self.road_map = None
+        self.section = self.road_map = self.curb.face = None
+        self.said.clear()
         self._hide_line(False)
         self.view.show_section(np.empty((0, 3)), [], tr("Click on the road in the map."))
+        self.view.show_face(())
 
     # -- where ------------------------------------------------------------------------------------
 

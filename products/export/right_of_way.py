@@ -40,22 +40,27 @@ def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
     rows, crosses = {name: k for k, name in enumerate(lanes.lane_id)}, lanes.type == "connector"
     ways = {name: {k} if crosses[k] else {rows[after] for after in lanes.successors[k] if after in rows and crosses[rows[after]]}
             for name, k in rows.items()}
-    area = dict(zip(np.flatnonzero(crosses).tolist(), areas_of(lanes, np.flatnonzero(crosses))))
+    across = np.flatnonzero(crosses)
+    areas = areas_of(lanes, across)
+    # by more than the stripe that neighbours have between them
+    cross = across[shapely.STRtree(areas).query(shapely.buffer(areas, -WIDEST_DOUBLE), predicate="intersects")]
+    crossing = set(zip(*cross.tolist()))
 
     def ways_of(names):
         return set().union(*(ways[name] for name in names))
 
     def conflicts(names, first):
-        # of two lanes that lead to several ways, those that cross by more than the stripe that neighbours have between them
+        # of two lanes that lead to several ways, those that cross
         return [(k, j) for name in names for other in first for k in sorted(ways[name]) for j in sorted(ways[other])
-                if crosses[rows[name]] and crosses[rows[other]] or area[k].buffer(-WIDEST_DOUBLE).intersects(area[j])]
+                if crosses[rows[name]] and crosses[rows[other]] or (k, j) in crossing]
 
     stated: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, known in source.attributes.items():
-        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows)):
+        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows and other != name)):
             stated[first].append(name)
     signs = {number: [name for name in named(row.get("lanes")) if ways.get(name)]
-             for number, row in enumerate(source.signals.rows if source.signals else ()) if (row.get("country"), row.get("code")) in GIVE_WAY}
+             for number, row in enumerate(source.signals.rows if source.signals else ())
+             if row.get("kind") == "sign" and (row.get("country"), row.get("code")) in GIVE_WAY}
     rights = [(names, first, [number for number, at in signs.items() if ways_of(names) & ways_of(at)]) for first, names in stated.items()]
     known_ways, at_signs = ways_of(name for names in stated.values() for name in names), {name for names in signs.values() for name in names}
     others = sorted(name for name, k in rows.items() if not crosses[k] and name not in at_signs)

@@ -7,7 +7,7 @@ import pytest
 from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES
 from lanewright.core.survey.las import parallel_reader
-from lanewright.desktop.review import section_dock
+from lanewright.desktop.review import section_curb, section_dock
 from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.processing_provider.call import QgisSource
 from qgis.core import QgsPointXY, QgsProject
@@ -199,3 +199,23 @@ def test_dragging_the_picture_is_no_click(curbs):
     QTest.mouseMove(curbs.view, QPoint(round(x) + 40, round(y)))
     QTest.mouseRelease(curbs.view, Qt.MouseButton.LeftButton, pos=QPoint(round(x) + 40, round(y)))
     assert not curbs.view.face and curbs.said.text() == ""
+
+
+def test_a_curb_that_was_found_goes_with_its_map(curbs):
+    click(curbs, 5.0)
+    QgsProject.instance().clear()
+    QTest.keyClick(curbs.view, Qt.Key.Key_Return)
+    assert curbs.curb.face is None and not curbs.view.face and curbs.said.text() == ""
+
+
+def test_one_section_stands_for_a_metre_on_a_map_in_feet_too(curbs, monkeypatch):
+    monkeypatch.setattr(section_curb, "metres_of", lambda road_map: 0.3048)
+    click(curbs, 5.0), click(curbs, 5.0)
+    (*_, line), = drawn()
+    assert np.ptp(line[:, 0]) == pytest.approx(1 / 0.3048, abs=0.05)
+    for _ in range(50):
+        curbs.step(1.0)
+    settled(curbs)
+    click(curbs, 5.0)
+    (*_, line), = drawn()
+    assert np.ptp(line[:, 0]) == pytest.approx(50.0, abs=0.1), "15 m on"

@@ -321,12 +321,12 @@ def test_the_sheet_explains_the_figures_that_stand_on_it_alone(project, height, 
     assert ("Height of the curb" in said) == told and "Axis with stations" in said and "Radius" not in said
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_figures_that_the_user_has_switched_off_are_not_explained(project, told):
-    layer = added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 60 0 100)", dict(
-        road=0, lane=1, direction=1, status="measured", station_m=0.0, end_m=60.0, length_m=60.0, radius_m=85.0)))
+@pytest.mark.parametrize("length, on, told", [(60, True, True), (60, False, False), (6, True, False)])
+def test_figures_that_are_switched_off_or_find_no_room_are_not_explained(project, length, on, told):
+    layer = added(project, "DRIVING_LINES", DRIVING_LINES, *[(f"LINESTRING Z (0 {aside} 100, {length} {aside} 100)", dict(
+        road=0, lane=1, direction=1, status="measured", station_m=0.0, end_m=length, length_m=length, radius_m=85.0)) for aside in (0, 1)])
     apply_style(layer, STYLES / "driving_lines.qml", DRIVING_LINES, "DRIVING_LINES")
-    layer.setLabelsEnabled(told)
+    layer.setLabelsEnabled(on)
     settings = SheetSettings(title="A street", profile=False, section_interval=0.0, scale="1:1000")
     assert ("Radius" in printed(sheet_layout(project, {"DRIVING_LINES": layer}, settings)[0])) == told
 

@@ -24,16 +24,18 @@ from lanewright.core.common.features import (
 )
 from lanewright.core.driving.layers import LANE_TYPES
 from lanewright.processing_provider.call import qgis_fields
-from lanewright.processing_provider.results.road_maps import Run
+from lanewright.processing_provider.results.road_maps import OUTPUT, Run
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, embed_style, say_in_users_language, style_on_load
 from lanewright.processing_provider.texts import speak
 from osgeo import gdal
 from qgis.core import (
+    QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
     QgsFeature,
+    QgsFillSymbol,
     QgsGeometry,
     QgsPointXY,
     QgsProcessingContext,
@@ -42,6 +44,7 @@ from qgis.core import (
     QgsRasterMinMaxOrigin,
     QgsRectangle,
     QgsRenderContext,
+    QgsSingleSymbolRenderer,
     QgsSymbol,
     QgsSymbolLayerUtils,
     QgsVectorFileWriter,
@@ -391,3 +394,16 @@ def test_layers_of_a_colleague_speak_the_language_of_who_opens_them_and_keep_the
         assert layer.attributeAlias(0) == "Mine", "once"
     finally:
         speak("en")
+
+
+@pytest.mark.parametrize("renderer", [QgsCategorizedSymbolRenderer("class", []), QgsSingleSymbolRenderer(QgsFillSymbol.createSimple({}))],
+                         ids=["by a field", "one colour"])
+def test_markings_that_a_colleague_has_drawn_otherwise_are_named_in_the_users_language(qgis_app, renderer):
+    layer = layer_of("Polygon", MARKINGS)
+    apply_style(layer, STYLES / "markings.qml", MARKINGS, "MARKINGS")
+    layer.setRenderer(renderer.clone())
+    layer.setCustomProperty(OUTPUT, "MARKINGS")
+    layer.setCustomProperty("lanewright/language", "de")
+    say_in_users_language([layer])
+    assert layer.customProperty("lanewright/language") == "en" and type(layer.renderer()) is type(renderer)
+    assert "Zebra crossing" in layer.labeling().rootRule().children()[0].settings().fieldName
