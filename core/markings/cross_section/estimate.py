@@ -197,11 +197,13 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     parts = (sections.strip == FIRST) & (kind_right == SECOND)
     drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
     cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
-    # what is too narrow for a lane between others, as a median, parts the directions
-    i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)))
-    end, lane = sections.right[i, k, m], strips_before(sections)[i, k, m]
-    within = np.isin(lane, (FIRST, SECOND)) & (sections.strip[i, k, end] == lane) & (c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane)
-    np.add.at(cost, (i, k), weights.median_within * within)
+    # what nobody drives on between lines of lanes, as a median, parts the directions, above all what is too narrow for a lane
+    before = strips_before(sections)
+    i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)) & np.isin(before, (FIRST, SECOND)))
+    end, lane = sections.right[i, k, m], before[i, k, m]
+    narrow, beyond = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end]
+    parting = (beyond == FIRST + SECOND - lane) & c.painted[i, m] & c.painted[i, end]
+    np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -weights.median_between * parting))
     return cost * c.observations(weights)[:, None]
 
 
@@ -237,7 +239,7 @@ def _lane_spans(estimate, part):
     check_cancelled()
     spans = []
     c, strips = estimate.candidates, _strips_of(estimate, part)
-    borders = _uses(estimate.sections[part], estimate.choice[part])
+    borders = separated_kinds(estimate.sections[part].chosen(estimate.choice[part]))[:, 0]
     best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
     lanes = _lanes_of(estimate, strips)
     lane_rows, shares = _place_shares(estimate, lanes, best, part)
@@ -383,8 +385,4 @@ def _second_places(estimate, lanes, strips, rows, way):
 
 def boundary_uses(estimate: RoadEstimate) -> np.ndarray:
     """(I, M) what each boundary separates in the best sequence, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
-    return _uses(estimate.sections, estimate.choice)
-
-
-def _uses(sections, choice):
-    return separated_kinds(sections.chosen(choice))[:, 0]
+    return separated_kinds(estimate.sections.chosen(estimate.choice))[:, 0]

@@ -96,6 +96,7 @@ class EstimateWeights:
     one_way: tuple[float, ...] = (0.4, 1.2, 0.3, 1.2)   # of one, two, three, four lanes and more that all lead one way
     uneven: float = 1.2   # of directions whose numbers of lanes differ by two and more
     median_within: float = 2.3   # of a strip too narrow for a lane between lanes of one direction: of ten medians nine part the directions
+    median_between: float = 0.5   # by what a strip between lines where nobody drives costs less between the directions than elsewhere
     two_and_one: float = 0.4   # of two lanes one way and one the other
     two_way_carriageway: float = 4.0   # of two directions on one of two carriageways
     dashed_between_many: float = 1.5   # of dashes between the directions of a road of more than two lanes

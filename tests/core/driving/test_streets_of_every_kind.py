@@ -331,6 +331,15 @@ def test_two_double_lines_with_room_between_them_are_a_painted_median_and_no_lan
     assert lanes_of(street) == {-3.46: 1, 3.46: -1}
 
 
+@pytest.mark.parametrize("borders", [(-3.9,), (-3.9, 13.4)])
+def test_what_nobody_drove_between_the_solid_lines_of_two_opposite_lanes_is_a_median_though_as_wide_as_a_lane(borders):
+    street = Street(vehicle=-1.75)
+    for offset in (-3.5, 0.0, 3.0, 6.4):
+        street.paint(offset, kind="")
+    lanes = street.lanes(edges=curbs(street, *borders))[0]
+    assert {round(float(np.median(street.offsets(line)))): row["direction"] for line, row in lanes} == {-2: 1, 5: -1}
+
+
 def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven():
     """Two lanes of 3.4 m each way, dashes between those of a direction, and 2.8 m of bare asphalt between the directions."""
     street = Street(vehicle=-3.1)
