@@ -225,7 +225,7 @@ def _where_driven(part, s, estimate, room, variances, full):
 
     A lane is as wide as its share, or of the usual width and anywhere in the strip. Vehicles keep to the middle with some scatter; where one lane may
     have all of the strip, they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as
-    the drive is surer.
+    the drive is surer. A lane off the middle of which the drive lies is as doubtful as one with a second reading.
 
     room : (N,) m that its share is wider than usual; variances : m², of the place of the lane in both readings, (N,) each
     full : by how many times more probable it is that one lane has all of the strip; 1 where several share it
@@ -234,8 +234,9 @@ def _where_driven(part, s, estimate, room, variances, full):
     variance = variances + weights.track_sigma**2 / np.maximum(count, 1)
     probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
     nothing = (full > 1) * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
-    share = np.where(count > 0, (probable * variances / variance).sum(axis=0) / (probable.sum(axis=0) + nothing), 0.0)
-    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if full > 1 else share > 0.5)
+    share, unlike = np.where(count > 0, np.stack([(probable * variances / variance).sum(axis=0), nothing]) / (probable.sum(axis=0) + nothing), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if full > 1 else share > 0.5,
+                   confidence=part.confidence - unlike * np.maximum(part.confidence - weights.most_in_doubt, 0.0))
 
 
 def _driven_beside(part, s, estimate):
@@ -285,9 +286,8 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
     values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence)
-    second = np.full(len(d), None, object)
-    second[:] = [span.second] * len(d)
-    return LaneTrack(int(rows.start), d, width, status, *(np.full(len(d), value) for value in values), span.direction, second)
+    return LaneTrack(int(rows.start), d, width, status, *(np.full(len(d), value) for value in values), span.direction,
+                     np.full(len(d), span.second, object))
 
 
 def _filled(values):

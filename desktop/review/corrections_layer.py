@@ -267,9 +267,13 @@ def changes_of(layer: QgsVectorLayer) -> list[str]:
     return [str(change) for change in layer.customProperty(CHANGES) or ()]
 
 
-def note_made(layer: QgsVectorLayer, count: int) -> None:
+def note_made(layer: QgsVectorLayer, count: int, begun: datetime) -> None:
     """Note that a run has made the first of its changes; what changed after it began counts as changed now, for the next run."""
     layer.setCustomProperty(CHANGES, [f"{_now()} {change.split(' ', 1)[1]}" for change in changes_of(layer)[count:]])
+    ours = set(written_here(layer))
+    for row in layer.getFeatures():
+        if row.id() not in ours and (when := _decided_at(row)) is not None and when >= begun.replace(microsecond=0):
+            note_change(layer, row, row.geometry())
 
 
 def _now():

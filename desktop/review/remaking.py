@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from datetime import datetime
+from datetime import datetime, timezone
 from functools import partial
 
 from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsGeometry, QgsPointXY, QgsProcessing, QgsProject, QgsRectangle, QgsVectorLayer
@@ -63,19 +63,20 @@ class Remaking(QWidget):
         kept = saved(road_map)
         places = {output: kept[output] if output == "REPORT" else loaded(kept.get(output, QgsProcessing.TEMPORARY_OUTPUT))
                   for output in {**kept, **dict.fromkeys(road_map.outputs)}}
-        self.run = BackgroundRun("roadmap", {**values_again(road_map, layer), **places}, partial(self._ended, layer.id(), len(changes)))
+        self.run = BackgroundRun("roadmap", {**values_again(road_map, layer), **places}, partial(
+            self._ended, layer.id(), len(changes), datetime.now(timezone.utc)))
         self.bar.setValue(0)
         self.run.task.progressChanged.connect(lambda percent: self.bar.setValue(round(percent)))
         self.show()
 
-    def _ended(self, layer_id, count, run, fine):
+    def _ended(self, layer_id, count, begun, run, fine):
         layer = QgsProject.instance().mapLayer(layer_id)
         if run is not self.run:
             return
         self.run = None
         self.hide()
         if fine and layer is not None:   # else the project is another one
-            note_made(layer, count)
+            note_made(layer, count, begun)
             run.load_results()
         elif not fine and not run.task.isCanceled():
             say(self.iface, tr("The map was not made again: {reason}", reason=run.reason), Qgis.MessageLevel.Warning)

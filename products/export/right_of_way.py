@@ -56,10 +56,11 @@ def rights_of_way(source: RoadMapSource) -> list[_RightOfWay]:
 
     stated: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for name, known in source.attributes.items():
-        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows)):
+        if name in rows and (first := tuple(other for other in named(known.get("yields_to")) if other in rows and other != name)):
             stated[first].append(name)
     signs = {number: [name for name in named(row.get("lanes")) if ways.get(name)]
-             for number, row in enumerate(source.signals.rows if source.signals else ()) if (row.get("country"), row.get("code")) in GIVE_WAY}
+             for number, row in enumerate(source.signals.rows if source.signals else ())
+             if row.get("kind") == "sign" and (row.get("country"), row.get("code")) in GIVE_WAY}
     rights = [(names, first, [number for number, at in signs.items() if ways_of(names) & ways_of(at)]) for first, names in stated.items()]
     known_ways, at_signs = ways_of(name for names in stated.values() for name in names), {name for names in signs.values() for name in names}
     others = sorted(name for name, k in rows.items() if not crosses[k] and name not in at_signs)

@@ -754,6 +754,17 @@ def test_what_a_colleague_has_corrected_since_is_not_in_the_map(at_first, tmp_pa
     assert "when it is made again" in at_first.kept.text()
 
 
+def test_what_a_colleague_corrects_during_a_run_stays_to_be_made_after_it(at_first, runs, tmp_path):
+    at_first.accept_button.click()
+    at_first.run_button.click()
+    other = QgsProject()
+    theirs = new_corrections_layer(other, str(tmp_path / "corrections.gpkg"), at_first.layer.crs(), "B12")
+    add_correction(theirs, at_first.places[1].pieces[0].line, theirs.crs(), action="delete", target="edge")
+    runs[0].ended(True)
+    (change,) = changes_of(at_first.layer)
+    assert change.split()[1] == "edge" and float(change.split()[2]) > EAST + 70, "later than the run, which does not have it"
+
+
 @pytest.mark.parametrize("table, beside", [("b12_road_edges", "b12_corrections"), ("B12_ROAD_EDGES", "B12_corrections"), ("Curbs", "corrections")])
 def test_corrections_of_a_map_in_postgis_lie_beside_its_tables(table, beside):
     source = f"dbname='maps' host=server user='ada' key='id' table=\"Road's maps\".\"{table}\" (geom)"

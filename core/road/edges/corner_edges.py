@@ -218,7 +218,7 @@ def _is_corner(tail, head):
     met = _tangents(tail, head)
     if met is None:
         # of a road's own curb the ground tells whether it goes straight on; on its other side the street opposite begins
-        return not tail.piece.kind == head.piece.kind == "main" and (tail.piece.road, tail.piece.side) == (head.piece.road, head.piece.side) \
+        return "main" not in (tail.piece.kind, head.piece.kind) and (tail.piece.road, tail.piece.side) == (head.piece.road, head.piece.side) \
             and max(map(abs, _turns(tail, head))) < 0.5 * EDGE.min_arc_turn
     # seen from its own piece a head bends the other way
     return any(bend >= EDGE.min_bend_turn and 1 / EDGE.max_radius_ratio <= met[-1] * bend / length <= EDGE.max_radius_ratio

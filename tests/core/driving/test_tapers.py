@@ -109,6 +109,18 @@ def test_beside_a_line_that_moves_aside_a_lane_stays_where_it_was_driven_beside_
     assert max(np.abs(street.offsets(line) + 1.75).max() for line in driven) < 0.15
 
 
+def test_a_lane_beside_a_curb_is_in_doubt_where_the_vehicle_drives_along_its_line_and_not_in_its_middle():
+    def inward(s):
+        return 0.7 * np.clip((90.0 - s) / 25.0, 0.0, 1.0)
+
+    street = Street(length=LENGTH, vehicle=-1.2).paint(lambda s: -inward(s), kind="centre")
+    edges, along = Features("LineStringZ", ROAD_EDGES), np.arange(0.0, LENGTH + 0.1, 0.5)
+    curb = street.places(along, -4.4 - inward(along))
+    edges.add(LineString(np.c_[curb, np.full(len(along), HEIGHT)]), road=0, kind="main", side="right")
+    driven = [row for line, row in street.lanes(edges=edges)[0] if row["direction"] == 1 and line.coords[0][0] < EAST + 60.0]
+    assert driven and max(row["confidence"] for row in driven) < 0.7
+
+
 def test_a_lane_in_a_bend_is_even_where_its_edge_line_and_curb_stop_at_the_mouth_of_a_side_street():
     street = Street(length=110.0, radius=55.0, vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="dashed")
     street.paint(-3.5, 5.0, 45.0, kind="edge").paint(-3.5, 70.0, 105.0, kind="edge")

@@ -1,7 +1,9 @@
 """Who goes first at a junction is said in one format as it was in the other."""
 
 import pytest
+import shapely
 from exported_maps import as_lanelets, as_roads
+from lanewright.core.common.features import SIGNALS, Features
 from lanewright.products.export.check.lanelets import check_lanelets
 from lanewright.products.export.check.roads import check_opendrive
 from lanewright.products.export.lanelet_map import layers_of_lanelets, node_places
@@ -64,3 +66,22 @@ def test_a_priority_of_a_road_that_is_not_of_the_junction_is_a_finding(tmp_path)
     text = (tmp_path / "out.xodr").read_text(encoding="utf-8").replace("</junction>", '<priority high="999" low="1"/></junction>')
     found = check_opendrive(read_opendrive(written(tmp_path, text))).found
     assert [one.fault for one in found if "999" in one.text] == ["connection"]
+
+
+def test_nobody_waits_for_himself(tmp_path):
+    lanes = crossing()
+    low, high, *_ = turns(lanes)
+    layers = RoadMapSource(lanes, attributes={low: {"yields_to": f"{low},{high}"}, high: {"yields_to": high}})
+    (junction,) = as_roads(tmp_path, layers)[1].junctions
+    assert len(junction.priorities) == 1 and junction.priorities[0][0] != junction.priorities[0][1]
+    (pair,) = waiting(layers_of_lanelets(as_lanelets(tmp_path, layers)[1], CRS))
+    assert pair == (place(layers, low), place(layers, high))
+
+
+@pytest.mark.parametrize("kind, rules", [("sign", 1), ("board", 0)])
+def test_what_is_no_sign_says_nothing_about_who_goes_first(tmp_path, kind, rules):
+    lanes, signals = crossing(), Features("PointZ", SIGNALS)
+    before = next(name for name, after in zip(lanes.lane_id, lanes.successors) if {*after} & {*turns(lanes)})
+    signals.add(shapely.Point(500_000.0, 5_400_000.0, 100.0), kind=kind, country="DE", code="205", lanes=before)
+    _, whole = as_lanelets(tmp_path, RoadMapSource(lanes, signals=signals))
+    assert sum(rule.tags.get("subtype") == "right_of_way" for rule in whole.others.values()) == rules

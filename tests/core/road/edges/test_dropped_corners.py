@@ -87,12 +87,14 @@ def test_no_edge_leads_straight_across_the_road_from_one_street_into_the_one_opp
 
 @pytest.mark.parametrize("pieces", [
     (edge(along(2, 17)), edge(along(23, 40), number=1)),
+    (edge(along(2, 9)), edge(np.concatenate([along(16, 19.7), corner(np.linspace(0, 60, 10))]), "corner", 1)),
     (edge(along(2, 17)), edge(into_side_street(), "side_street", 1)),
     (edge(along(2, 8)), edge(corner(np.linspace(35, 60, 10)), "corner", 1)),
     (edge(along(2, 17)), edge(corner(np.linspace(35, 60, 10)) + [0.0, 3.0], "corner", 1)),
     (edge(along(2, 17)), edge(corner(np.linspace(35, 60, 10)), "corner", 1, lift=1.5)),
     (edge(along(2, 17)), edge(corner(np.linspace(35, 60, 10)), "island", 1))],
-    ids=["a street's mouth", "a corner of which nothing was seen", "too far away", "the other side of the way", "another level", "an island"])
+    ids=["a street's mouth", "a mouth before a short block of which the corner was found",
+         "a corner of which nothing was seen", "too far away", "the other side of the way", "another level", "an island"])
 def test_an_opening_stays_open(pieces):
     assert arcs(*pieces) == []
 
