@@ -29,3 +29,21 @@ def nothing_is_left(qgis_app, provider):
         if window.parent() is None:
             window.deleteLater()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+@pytest.fixture
+def window(qgis_app):
+    """A dock beside a map of a road with two doubtful places; of the first, an edge was bridged and a lane inferred."""
+    from doubtful_street import doubtful_window
+
+    with doubtful_window() as dock:
+        yield dock
+
+
+@pytest.fixture
+def at_first(window, tmp_path):
+    """That dock at the first place, with a file for the corrections."""
+    from doubtful_street import go_to_first
+
+    go_to_first(window, tmp_path / "corrections.gpkg")
+    return window

@@ -1,86 +1,27 @@
 """The window of doubtful places, and the corrections that are made in it."""
 
-import os
 import re
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
-from datetime import datetime, timedelta, timezone
-from types import SimpleNamespace
-from uuid import uuid4
 
 import numpy as np
 import pytest
+from doubtful_street import corrections
 from lanewright.algorithms.survey_input import read_corrections
 from lanewright.core.common.features import DRIVING_LINES, LANES, ROAD_EDGES
 from lanewright.core.survey.las import parallel_reader
-from lanewright.desktop.review import remaking, smart_pick
-from lanewright.desktop.review.corrections_layer import (
-    add_correction,
-    changes_of,
-    corrections_layers,
-    corrections_of,
-    new_corrections_layer,
-    place_beside,
-)
+from lanewright.desktop.review import smart_pick
+from lanewright.desktop.review.corrections_layer import corrections_layers
 from lanewright.desktop.review.doubt_dock import DoubtDock
 from lanewright.processing_provider.call import QgisSource
-from lanewright.processing_provider.results.road_maps import clouds_lie_in, output_of, place_layer, road_maps
+from lanewright.processing_provider.results.road_maps import clouds_lie_in, road_maps
 from lanewright.processing_provider.styling import second_reading
-from qgis.core import (
-    QgsCoordinateReferenceSystem,
-    QgsDataSourceUri,
-    QgsFeature,
-    QgsGeometry,
-    QgsPointXY,
-    QgsProject,
-    QgsProviderRegistry,
-    QgsRectangle,
-    QgsSettings,
-    QgsVectorLayer,
-)
-from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
-from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QObject, Qt, pyqtSignal
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
+from qgis.gui import QgsMapToolPan
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
 from qgis.PyQt.QtGui import QAction, QImage
-from qgis.PyQt.QtWidgets import QMainWindow, QPushButton
 from road_map_layers import EAST, NORTH, added, run_at
-
-
-@pytest.fixture
-def window(qgis_app):
-    """A dock beside a map of a road with two doubtful places; of the first, an edge was bridged and a lane inferred."""
-    QgsSettings().remove("lanewright/doubts")
-    project = QgsProject.instance()
-    project.clear()
-    piece = lambda at, **row: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, station_m=float(at), length_m=8.0, **row))  # noqa: E731
-    added(project, "ROAD_EDGES", ROAD_EDGES, piece(80, side="left", status="bridged"), piece(10, side="left", status="bridged"),
-          piece(40, side="left", status="measured"), piece(60, side="left", status="accepted", agree_cm=9.0))
-    added(project, "DRIVING_LINES", DRIVING_LINES, piece(14, lane=1, direction=1, status="inferred", offset_m=1.5))
-    main = QMainWindow()
-    canvas, bar = QgsMapCanvas(main), QgsMessageBar(main)
-    canvas.resize(400, 300)
-    canvas.setDestinationCrs(project.mapLayers()[next(iter(project.mapLayers()))].crs())
-    canvas.setExtent(QgsRectangle(EAST - 10, NORTH - 40, EAST + 110, NORTH + 50))
-    iface = SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas, messageBar=lambda: bar, removeDockWidget=main.removeDockWidget,
-                            addTabifiedDockWidget=lambda area, dock, beside, in_front: main.addDockWidget(area, dock))
-    dock = DoubtDock(iface)
-    main.show()
-    yield dock
-    dock.remove()
-    project.clear()
-
-
-@pytest.fixture
-def at_first(window, tmp_path):
-    window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
-    window.go(road_maps(QgsProject.instance())[0])
-    return window
-
-
-def corrections():
-    layer, = corrections_layers(QgsProject.instance())
-    return [(row["action"], row["target"], row["road"], row["station_m"], geometry.length)
-            for geometry, row in read_corrections(QgisSource(layer, "Corrections"))]
 
 
 def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
@@ -315,8 +256,6 @@ def test_corrections_are_seen_on_a_map_that_was_made_again(at_first):
     assert project.layerTreeRoot().layerOrder()[0] is corrections_layers(project)[0]
 
 
-# -- what the points show
-
 @pytest.fixture
 def over_points(at_first, tmp_path, monkeypatch):
     """The window over a street with a curb of 12 cm at 5 m to the left, which the map has on its first 20 m alone."""
@@ -389,130 +328,6 @@ def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_of
         over_points.undo()
 
 
-# -- making it again, and vertices
-
-class Task(QObject):
-    progressChanged = pyqtSignal(float)
-    canceled = False
-
-    def cancel(self):
-        self.canceled = True
-
-    def isCanceled(self):
-        return self.canceled
-
-
-@pytest.fixture
-def runs(at_first, monkeypatch):
-    """The runs that the window began: none of them does anything until it is ended by its function `ended(fine)`."""
-    begun = []
-
-    class Run:
-        reason = "The disk is full."
-
-        def __init__(self, name, parameters, ended):
-            self.parameters, self.task, self.loaded = parameters, Task(), []
-            self.ended = lambda fine: ended(self, fine)
-            begun.append(self)
-
-        def load_results(self):
-            self.loaded.append(True)
-
-    monkeypatch.setattr(remaking, "BackgroundRun", Run)
-    at_first.iface.mainWindow().show()
-    return begun
-
-
-def test_the_corrected_stretch_is_made_again_while_one_goes_on_and_what_is_corrected_meanwhile_is_next(at_first, runs):
-    at_first.list.setCurrentRow(1)
-    at_first.delete_button.click()   # a lane from 14 to 22 m
-    at_first.run_button.click()
-    line = at_first.remaking
-    assert line.isVisible() and line.said.text() == "road 0, 14–22 m is being made again."
-    assert runs[0].parameters["CORRECTIONS"] == at_first.layer.id() and {"ROAD_EDGES", "DRIVING_LINES"} <= set(runs[0].parameters)
-    runs[0].task.progressChanged.emit(40.0)
-    assert line.bar.value() == 40
-    at_first.list.setCurrentRow(0)
-    at_first.accept_button.click()
-    at_first.run_button.click()
-    at_first.run_button.click()
-    assert len(runs) == 1 and "corrected meanwhile is next" in line.said.text() and at_first.place.station == 80, "one goes on"
-    runs[0].ended(True)
-    assert runs[0].loaded and len(runs) == 2 and line.said.text() == "road 0, 10–18 m is being made again."
-    runs[1].ended(True)
-    assert len(runs) == 2 and not line.isVisible()
-
-
-def test_cancel_ends_the_run_and_those_that_wait_and_what_failed_says_why(at_first, runs):
-    at_first.accept_button.click()
-    at_first.run_button.click(), at_first.run_button.click()
-    at_first.remaking.findChild(QPushButton).click()
-    assert runs[0].task.canceled
-    runs[0].ended(False)
-    assert len(runs) == 1 and not at_first.remaking.isVisible() and at_first.iface.messageBar().currentItem() is None
-    at_first.run_button.click()
-    assert "road 0, 10–18 m" in at_first.remaking.said.text(), "it is still to be made"
-    runs[1].ended(False)
-    assert "The disk is full" in at_first.iface.messageBar().currentItem().text() and not runs[1].loaded
-
-
-def test_a_run_without_its_point_clouds_says_that_they_are_not_there(at_first):
-    at_first.accept_button.click()
-    at_first.run_button.click()
-    clock = QElapsedTimer()
-    clock.start()
-    while at_first.remaking.run is not None and clock.elapsed() < 60_000:
-        QCoreApplication.processEvents()
-    assert "The map was not made again" in at_first.iface.messageBar().currentItem().text()
-    assert "a.laz" in at_first.iface.messageBar().currentItem().text() and not at_first.remaking.isVisible()
-
-
-def test_on_wish_every_correction_is_made_at_once(at_first, runs):
-    at_first.at_once.setChecked(True)
-    try:
-        at_first.accept_button.click()
-        assert len(runs) == 1
-        runs[0].ended(True)
-        at_first.undo_button.click()
-        assert len(runs) == 2, "a map without the correction"
-    finally:
-        at_first.at_once.setChecked(False)
-
-
-def test_a_run_of_a_project_that_was_closed_brings_nothing_into_the_next(at_first, runs):
-    at_first.accept_button.click()
-    at_first.run_button.click()
-    QgsProject.instance().clear()
-    runs[0].ended(True)
-    assert not runs[0].loaded
-
-
-def test_what_is_corrected_during_a_run_stays_to_be_made_after_it(at_first, runs):
-    at_first.accept_button.click()
-    at_first.run_button.click()
-    changed = lambda: at_first.layer.customProperty("lanewright/changes")[-1].split()[0]  # noqa: E731
-    before = changed()
-    at_first.list.setCurrentRow(0)
-    at_first.delete_button.click()
-    during = changed()
-    runs[0].ended(True)
-    assert before < during < changed() and len(at_first.layer.customProperty("lanewright/changes")) == 1, "later than the run, which does not have it"
-
-
-def test_what_is_being_drawn_stays_when_the_map_comes_that_was_made_meanwhile(at_first):
-    at_first.begin_draw("edge")
-    at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
-    shown, again = [], []
-    at_first.shown.connect(shown.append), at_first.made_again.connect(again.append)
-    newer = added(QgsProject.instance(), "ROAD_EDGES", ROAD_EDGES, ("LINESTRING Z (10 0 100, 18 0 100)", dict(
-        road=0, station_m=10.0, length_m=8.0, side="left", status="bridged")), run=run_at(12))
-    at_first._follow()
-    assert again[0].layers == (newer,) and not shown, "map and section stay where one is"
-    at_first.tool.add(QgsPointXY(EAST + 30, NORTH + 4))
-    at_first.tool.finish()
-    assert [length for *_, length in corrections()] == [pytest.approx(10.0)]
-
-
 def test_one_key_takes_up_the_vertex_tool_on_the_corrections_and_once_more_keeps_what_was_dragged(at_first):
     iface, chosen, triggered = at_first.iface, [], []
     iface.setActiveLayer = chosen.append
@@ -579,77 +394,6 @@ def test_a_list_of_photos_with_names_beside_it_is_enough(window, tmp_path):
     assert window.photo.photo.path == tmp_path / "a.jpg" and window.photo.photo.distance > 5, "the nearer one lies on another computer"
 
 
-# -- two people
-
-def place_of_colleagues(kind, folder):
-    """A new file, or a new table of the server that libpq's variables name."""
-    if kind == "file":
-        return str(folder / "corrections.gpkg")
-    return f"dbname='{os.environ['PGDATABASE']}' key='id' table=\"public\".\"corrections_{uuid4().hex[:8]}\" (geom)"
-
-
-@pytest.fixture(params=["file", *(["database"] if os.environ.get("PGHOST") else [])])
-def colleague(request, at_first, tmp_path):
-    """The corrections of the window, which has accepted the first edge, as a colleague has them open: by a connection and project of his own."""
-    place = place_of_colleagues(request.param, tmp_path)
-    at_first.ask_for_file = lambda: place
-    at_first.ask = lambda question: pytest.fail(f"nothing is to be asked: {question}")
-    at_first.accept_button.click()
-    theirs = QgsProject()
-    yield new_corrections_layer(theirs, place, at_first.layer.crs(), "B12")
-    if request.param == "database":
-        QgsProviderRegistry.instance().providerMetadata("postgres").createConnection(place, {}).dropVectorTable(
-            "public", re.search("corrections_[^\"]*", place)[0])
-
-
-def decides(colleague, piece, action, author="Ada"):
-    """What the window of the colleague writes."""
-    former = corrections_of(colleague, [piece], colleague.crs()).get(0)
-    number = add_correction(colleague, piece.line, colleague.crs(), former, action=action, target=piece.target, road=piece.road,
-                            station_m=piece.station)
-    colleague.dataProvider().changeAttributeValues({number: {colleague.fields().lookupField("author"): author}})
-
-
-def test_two_people_decide_about_different_places_and_see_what_the_other_has_done(at_first, colleague):
-    decides(colleague, at_first.places[1].pieces[0], "delete")
-    at_first.accept_button.click()
-    assert [action for action, *_ in corrections()] == ["accept", "delete", "accept"] and "3." in at_first.kept.text()
-    assert at_first.place.station == 80 and "2 done" in at_first.where.text()
-    assert "→ delete (Ada)" in at_first.list.item(0).text()
-    begin, end = QgsPointXY(EAST + 20, NORTH + 4), QgsPointXY(EAST + 31, NORTH + 4)
-    add_correction(colleague, QgsGeometry.fromPolylineXY([begin, end]), colleague.crs(), action="draw", target="edge")
-    assert len(corrections()) == 4
-
-
-def test_who_decides_later_about_the_same_piece_is_told_and_chooses(at_first, colleague):
-    asked = []
-    at_first.ask = lambda question: bool(asked.append(question))
-    decides(colleague, at_first.chosen[0], "delete")
-    at_first.accept_button.click()
-    assert len(asked) == 1 and "→ delete (Ada)" in asked[0] and [action for action, *_ in corrections()] == ["accept", "delete"]
-    assert "→ delete (Ada)" in at_first.list.currentItem().text(), "the list shows what holds now"
-    at_first.accept_button.click()
-    assert len(asked) == 1 and [action for action, *_ in corrections()] == ["accept", "accept"], "seen and decided: theirs makes room"
-
-
-def test_a_line_that_moves_what_a_colleague_has_decided_meanwhile_is_not_lost(at_first, colleague):
-    at_first.move_button.click()
-    decides(colleague, at_first.chosen[0], "delete")
-    at_first.ask = lambda question: "→ delete (Ada)" in question
-    for x in (14, 22):
-        at_first.tool.add(QgsPointXY(EAST + x, NORTH + 1))
-    at_first.tool.finish()
-    assert [action for action, *_ in corrections()] == ["accept", "move"]
-
-
-def test_a_correction_of_a_colleague_is_not_taken_back(at_first, colleague):
-    decides(colleague, at_first.places[1].pieces[0], "delete")
-    at_first.undo_button.click()
-    assert [action for action, *_ in corrections()] == ["delete"] and not at_first.undo_button.isEnabled()
-
-
-# -- what is gone through, and the report of it
-
 def test_short_pieces_are_passed_over_and_the_choice_is_kept(at_first):
     at_first.kinds.setCurrentIndex(at_first.kinds.findData("edge"))
     at_first.shortest.setValue(8.0)
@@ -688,23 +432,6 @@ def test_the_report_says_how_many_places_are_done_corrected_and_left_and_how_lon
     assert "|0|80.0|8.0|1.2|Road edge" in cells, cells
 
 
-def test_a_map_that_was_removed_while_it_waited_is_not_made_again(at_first, runs):
-    at_first.accept_button.click()
-    at_first.run_button.click(), at_first.run_button.click()
-    project = QgsProject.instance()
-    project.removeMapLayers([layer.id() for layer in at_first.road_map.layers])
-    runs[0].ended(False)
-    assert len(runs) == 1 and not at_first.remaking.isVisible()
-
-
-def test_stations_of_what_is_made_again_are_metres_on_a_map_in_feet(at_first, runs):
-    at_first.list.setCurrentRow(1)
-    at_first.delete_button.click()
-    for layer in (*at_first.road_map.vectors, at_first.layer):
-        layer.setCrs(QgsCoordinateReferenceSystem("EPSG:2263"))   # of 8 feet of lane from 14 m on
-    assert remaking.stretches(at_first.road_map, changes_of(at_first.layer), at_first.layer.crs()) == ["road 0, 14–16 m"]
-
-
 def test_corrections_without_road_and_station_do_as_well(at_first):
     layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=action:string&field=target:string", "By hand", "memory")
     row = QgsFeature(layer.fields())
@@ -734,40 +461,3 @@ def test_a_report_that_cannot_be_written_says_so(at_first, tmp_path, monkeypatch
     monkeypatch.setattr("lanewright.desktop.review.doubt_dock.ask_for_file", lambda *names: str(tmp_path / "gone" / "review.html"))
     at_first.write_report()
     assert "review.html" in at_first.iface.messageBar().currentItem().text()
-
-
-def test_what_a_colleague_has_corrected_since_is_not_in_the_map(at_first, tmp_path):
-    project, other = QgsProject.instance(), QgsProject()
-    at_first.accept_button.click()
-    at_first.layer.setCustomProperty("lanewright/changes", [])
-    run = run_at(9, CORRECTIONS="corrections.gpkg")
-    for layer in at_first.road_map.layers:
-        place_layer(layer, project, output_of(layer), replace(run, provenance=replace(run.provenance, ended=datetime.now(timezone.utc))))
-    at_first.road_map = road_maps(project)[0]
-    at_first._tell()
-    assert "in this map" in at_first.kept.text()
-    theirs = new_corrections_layer(other, str(tmp_path / "corrections.gpkg"), at_first.layer.crs(), "B12")
-    number = add_correction(theirs, at_first.places[1].pieces[0].line, theirs.crs(), action="delete", target="edge")
-    later = f"{datetime.now(timezone.utc) + timedelta(seconds=5):%Y-%m-%d %H:%M:%S}"
-    theirs.dataProvider().changeAttributeValues({number: {theirs.fields().lookupField("decided_at"): later}})
-    at_first._tell()
-    assert "when it is made again" in at_first.kept.text()
-
-
-def test_what_a_colleague_corrects_during_a_run_stays_to_be_made_after_it(at_first, runs, tmp_path):
-    at_first.accept_button.click()
-    at_first.run_button.click()
-    other = QgsProject()
-    theirs = new_corrections_layer(other, str(tmp_path / "corrections.gpkg"), at_first.layer.crs(), "B12")
-    add_correction(theirs, at_first.places[1].pieces[0].line, theirs.crs(), action="delete", target="edge")
-    runs[0].ended(True)
-    (change,) = changes_of(at_first.layer)
-    assert change.split()[1] == "edge" and float(change.split()[2]) > EAST + 70, "later than the run, which does not have it"
-
-
-@pytest.mark.parametrize("table, beside", [("b12_road_edges", "b12_corrections"), ("B12_ROAD_EDGES", "B12_corrections"), ("Curbs", "corrections")])
-def test_corrections_of_a_map_in_postgis_lie_beside_its_tables(table, beside):
-    source = f"dbname='maps' host=server user='ada' key='id' table=\"Road's maps\".\"{table}\" (geom)"
-    layer = SimpleNamespace(providerType=lambda: "postgres", source=lambda: source)
-    uri = QgsDataSourceUri(place_beside(SimpleNamespace(vectors=[layer], layers=[layer], outputs=["ROAD_EDGES"])))
-    assert (uri.schema(), uri.table(), uri.geometryColumn(), uri.keyColumn(), uri.username()) == ("Road's maps", beside, "geom", "id", "ada")

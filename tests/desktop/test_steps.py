@@ -14,7 +14,6 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDockWidget
 from road_map_layers import EAST, NORTH, added, run_at
-from test_doubt_dock import window  # noqa: F401
 
 LINE = ("LINESTRING Z (0 0 100, 40 0 100)", dict(road=0))
 AREA = ("POLYGON Z ((0 0 1, 9 0 1, 9 9 1, 0 0 1))", dict(road=0))
@@ -82,7 +81,7 @@ def test_a_step_that_was_run_again_alone_makes_those_after_it_stale_and_its_sett
     assert values_again(road_map)["CURVE"] == "spline" and values_again(road_map)["TRAFFIC_SIDE"] == "automatic"
 
 
-def test_the_window_says_whether_the_corrections_are_in_the_map(window, provider, tmp_path):  # noqa: F811
+def test_the_window_says_whether_the_corrections_are_in_the_map(window, provider, tmp_path):
     window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
     window.go(road_maps(QgsProject.instance())[0])
     window.accept_button.click()
@@ -126,7 +125,7 @@ def test_the_window_goes_on_in_the_map_that_is_made_again_before_the_results_vie
     assert window.places[0].station == 10.0, "another survey is another matter"
 
 
-def test_a_map_that_was_saved_is_made_again_in_its_place_and_the_window_goes_on_where_it_was(window, provider, tmp_path):  # noqa: F811
+def test_a_map_that_was_saved_is_made_again_in_its_place_and_the_window_goes_on_where_it_was(window, provider, tmp_path):
     project, package = QgsProject.instance(), tmp_path / "roadmap.gpkg"
     piece = lambda at: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(  # noqa: E731
         road=0, side="left", status="bridged", station_m=float(at), length_m=8.0, kind="along"))
