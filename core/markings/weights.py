@@ -289,10 +289,7 @@ class SELECTION:
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
     max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
-    max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
-    max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    min_bars: int = 4   # that make an outline
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
