@@ -38,7 +38,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     """The lines worth drawing, by station.
 
     A line needs paint: `min_paint` m of it, or two dashes of a pattern. What runs close beside a much longer line is that line's ragged edge; what
-    frames a hatched area belongs to that area.
+    frames a hatched area belongs to that area. What goes on behind one is the same line, of which nothing is drawn on the area.
 
     longest_dash : m, longer paint is solid line
     """
@@ -62,7 +62,9 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
             near = strands.between(first, last)
             return spans[near[(owner[near] != k) & (np.abs(level[owner[near]] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
-        selected.append(SelectedLine(line, bool(double[k]), _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)))
+        pieces = [piece for piece in _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)
+                  if piece.status == "measured" or not edges.bar(tips := np.array([piece.first, piece.last]), np.interp(tips, *line.by_station), True)]
+        selected.append(SelectedLine(line, bool(double[k]), pieces))
     return selected
 
 

@@ -319,9 +319,9 @@ class EdgesBeside:
         return [shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, areas)), -SELECTION.max_bar_end_offset))
                 for areas in (self.islands, self.hatched)]
 
-    def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
-        """Whether an island or a hatched area lies between two places, (2,) m each."""
-        return any(len(inner.query(shapely.linestrings(s, d), predicate="intersects")) for inner in self._inner)
+    def bar(self, s: np.ndarray, d: np.ndarray, hatching: bool = False) -> bool:
+        """Whether an island, or else a hatched area, lies between two places, (2,) m each."""
+        return len(self._inner[hatching].query(shapely.linestrings(s, d), predicate="intersects")) > 0
 
     def framed(self, line: LinkedLine) -> bool:
         """Whether a line is the outline of hatched areas along most of its paint; an edge line beside one goes on after it."""
