@@ -30,7 +30,7 @@ from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
-from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
+from .islands import far_sides, ground_behind, on_island_tops, on_main_islands
 from .main_curbs import KnownPlaces, SearchLimit, line_tree, main_curbs_of, main_runs, median_distance, places_along, usual_height
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
@@ -45,7 +45,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
-    of an island becomes a line about that island where the road's own curb is found behind it.
+    of an island becomes a line about that island.
 
     curb_points : CurbPoints of every road, of kind main
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
@@ -60,28 +60,14 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     seen = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
                          settings, progress.part(0.0, RETURN.led_progress))
     looks = {road: None if ground is None else RoadLook(ground, road) for road in roads}
-    works = [_returns_of_road(curb_points, on_islands, decimation, road, mains[road], seen[road], settings,
-                              [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
-    returns = list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0)))
-    for road, (on_island, main, chain, _), curbs in zip(roads, returns, seen_once([curbs for *_, curbs in returns])):
-        on_islands &= on_island
-        points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
+    works = [find_curb_returns(decimation, road, mains[road][0], seen[road], settings, usual_height(curb_points[curb_points.road == road]),
+                               [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
+    for road, curbs in zip(roads, seen_once(list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))))):
+        points, hidden = _points_of_road(survey, road, curbs, *mains[road][::-1], beside, curb_points.crs)
         lines += points
         parts += points + hidden
     progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
     return CurbPoints.join([curb_points[~on_islands], *parts], curb_points.crs)
-
-
-def _returns_of_road(curb_points, on_islands, decimation, road, main_and_chain, seen, settings, elsewhere, look):
-    """The work on one road: which main curbs are islands, the main curb, the number of the next chain and the curbs away from it."""
-    survey, of_road, (main, chain) = decimation.survey, curb_points.road == road, main_and_chain
-    usual = usual_height(curb_points[of_road])
-    curbs = yield from find_curb_returns(decimation, road, main, seen, settings, usual, elsewhere, look)
-    if not are_replaced(curb_points[of_road & on_islands], curbs):
-        main, chain = main_curbs_of(curb_points, survey, road)
-        again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
-        return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, usual, elsewhere, look))
-    return np.ones(len(of_road), bool), main, chain, curbs
 
 
 def seen_once(curbs_of_roads: Sequence[Sequence[CurbReturn]]) -> list[list[CurbReturn]]:
@@ -137,7 +123,7 @@ class _PlanSearch:
     behind: np.ndarray
 
     @classmethod
-    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray = np.empty((2, 0))) -> _PlanSearch:
+    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray) -> _PlanSearch:
         """The search beside the main curbs of a road, as of `find_curb_returns`."""
         lines = [coordinates for _, coordinates in main_runs(main, line)]
         return cls({side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()},
@@ -146,7 +132,7 @@ class _PlanSearch:
                    FollowedEnds.of(lines), behind)
 
 
-def _steps_in_plan(decimation, searches, settings, progress=Progress()):
+def _steps_in_plan(decimation, searches, settings, progress):
     """{number of a road: its _PlanSearch, and what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
     sections = [(road, *section) for road in searches for section in work_sections(decimation.survey, road, settings.profile_width)]
     phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
