@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from ...common.progress import Progress
-from ...execution.in_step import Work, in_step
+from ...execution.in_step import in_step
 from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import Road
 from ...survey.weights import FRAME
@@ -59,7 +59,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     runs = {road: main_runs(main, survey.frame.road(road)) for road, (main, _) in mains.items()}
     searches = {road: _PlanSearch.of(main, survey.frame.road(road), runs[road], behind[road]) for road, (main, _) in mains.items()}
     seen = _steps_in_plan(decimation, searches, settings, progress.part(0.0, RETURN.led_progress))
-    works = [find_curb_returns(decimation, road, runs, searches[road], seen[road], settings, usual_height(curb_points[curb_points.road == road]),
+    works = [_returns_of_road(decimation, road, runs, searches[road], seen[road], settings, usual_height(curb_points[curb_points.road == road]),
                                None if ground is None else RoadLook(ground, road)) for road in roads]
     for road, curbs in zip(roads, seen_once(list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))))):
         points, hidden = _points_of_road(survey, road, curbs, *mains[road][::-1], beside, curb_points.crs)
@@ -140,8 +140,7 @@ def _steps_in_plan(decimation, searches, settings, progress):
     return {road: _join_parts(of_road) for road, of_road in parts.items()}
 
 
-def find_curb_returns(decimation: PointDecimation, road: int, runs: Mapping[int, Sequence[tuple]], search: _PlanSearch,
-                      seen: tuple[PlanSteps, np.ndarray, np.ndarray] | None, settings: CurbSettings, usual: float, look: RoadLook | None) -> Work:
+def _returns_of_road(decimation, road, runs, search, seen, settings, usual, look):
     """Part of a work: corners, side streets and islands of one road, a list of CurbReturn.
 
     runs : of every road, as of `main_runs`
