@@ -62,8 +62,10 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
             near = strands.between(first, last)
             return spans[near[(owner[near] != k) & (np.abs(level[owner[near]] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
-        pieces = [piece for piece in _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)
-                  if piece.status == "measured" or not edges.bar(tips := np.array([piece.first, piece.last]), np.interp(tips, *line.by_station), True)]
+        pieces = _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)
+        ends = [np.array([piece.first, piece.last]) for piece in pieces]
+        crosses = [edges.bar(s, np.interp(s, *line.by_station), hatching=True) for s in ends]
+        pieces = [piece for piece, hatched in zip(pieces, crosses) if piece.status == "measured" or not hatched]
         selected.append(SelectedLine(line, bool(double[k]), pieces))
     return selected
 
