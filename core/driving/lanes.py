@@ -15,7 +15,7 @@ from ..markings.cross_section.beside import BEYOND
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
+from ..markings.cross_section.sequence import beside_island, lane_places
 from ..markings.cross_section.weights import BARE, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
@@ -273,7 +273,7 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
     between_both = all(painted) or not any(painted)
     beside_one = any(painted) and not between_both
-    if beside_one and (line_distance or beside_surface_end(*made_of)):
+    if beside_one and (line_distance or SURFACE_END[made_of].any()):
         # the end of the surface is ragged, a lane is not
         even = np.full(len(width), 2 * line_distance or np.median(width))
         begin, width = begin if painted[0] else begin + (even - width) * span.count, even
@@ -281,7 +281,7 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     # a curb that a lane reaches to shows its place too
-    reaches = BARE in made_of or beside_one and not beside_surface_end(*made_of) \
+    reaches = BARE in made_of or beside_one and not SURFACE_END[made_of].any() \
         and np.nanmedian(np.abs(boundaries.d[span.left, rows] - boundaries.d[span.right, rows] - width * span.count)) < SAME_LANE
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
