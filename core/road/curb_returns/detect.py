@@ -156,7 +156,7 @@ def _returns_of_road(decimation, road, runs, search, seen, settings, usual, look
               and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs[road], line, search.limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, search.limits, settings)
+    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, settings)
     return (yield from with_curbs_beyond(curbs, decimation, road, search.known))
 
 
@@ -197,8 +197,7 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
+    noisy = raster.noise > RETURN.noisy_raster_share * clear
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)
