@@ -57,6 +57,7 @@ class RoadEstimate:
     sections: Sections
     choice: np.ndarray   # (I,) which of them
     total: float   # nats of them
+    unnamed_total: float   # nats of the best sequence without the names of the lines
     first_direction: int   # of the lanes met first from the left
     evidence: Evidence   # that it is made from
     weights: EstimateWeights
@@ -93,11 +94,6 @@ class RoadEstimate:
         result = np.full((*values.shape[:-2], *self.sections.cost.shape), missing)
         result[..., self.lined, :] = values
         return result
-
-    @property
-    def unnamed_total(self) -> float:
-        """Nats of the best sequence without the names of the lines."""
-        return float(self.least[0, 1, -1].min()) if len(self.lined) else 0.0
 
     @property
     def once_total(self) -> float:
@@ -173,10 +169,10 @@ def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, 
     # what is laid out alike along the road was seen once
     seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
     costs = np.stack([sections.cost, cost, seen_once])[:, lined]
-    least, choice, total = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), 0.0
+    least, choice, totals = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), (0.0, 0.0)
     if len(lined):
-        choice[lined], total = best_sequence(least[0, 0], transition)
-    return RoadEstimate(candidates, lane_width, sections, choice, total, first_direction, evidence, weights, lined, costs, transition, least)
+        choice[lined], totals = best_sequence(least[0, 0], transition)[0], least[0, :2, -1].min(axis=1).tolist()
+    return RoadEstimate(candidates, lane_width, sections, choice, *totals, first_direction, evidence, weights, lined, costs, transition, least)
 
 
 def _stretches(candidates, begin=0):
