@@ -28,10 +28,10 @@ def sample(made_survey):
     return made_survey(length=24.0, pulse_rate=40_000.0)
 
 
-def boundaries(sample, folder, curbs=CurbSettings(), progress=None, clouds=(), workers=0, settings=SurveySettings()):
+def boundaries(sample, folder, curbs=CurbSettings(), progress=None, clouds=(), workers=0):
     made, path = sample
     execution = ExecutionSettings(workers, str(folder) if folder else "")
-    survey = open_survey(clouds or [path], made.trajectory, settings, progress or Progress(), execution)
+    survey = open_survey(clouds or [path], made.trajectory, SurveySettings(), progress or Progress(), execution)
     try:
         return draw_boundaries(find_curb_points(survey, BoundarySettings("both", curbs), progress or Progress()), survey.frame)
     finally:
@@ -156,7 +156,7 @@ def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_an
             monkeypatch.setattr(keep, "code_digest", lambda: "another")
         if change == "packages":
             monkeypatch.setattr(keep, "versions", lambda: {"python": "3.11", "numpy": "9.9"})
-        boundaries(sample, work, progress=heard, clouds=[cloud], settings=settings)
+        open_survey([cloud], made.trajectory, settings, heard, ExecutionSettings(0, str(work))).store.close()
         assert not heard.says("read by an earlier run"), change
 
 
