@@ -24,7 +24,7 @@ from .columns import Columns
 from .records import COORDINATE_SCALE, Points
 
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
-STRETCH_POINTS = 1 << 20   # points of a stretch that a worker process works on, at most: a second of its time
+STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, at most: a second of its time
 
 Key = tuple[int, int]   # numbers of a road and of a section of it
 Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number of its sections
