@@ -289,10 +289,7 @@ class SELECTION:
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
     max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
-    max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
-    max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    min_bars: int = 4   # that make an outline
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
@@ -379,7 +376,7 @@ class NOISY:
     # Nats by which such a piece is more likely paint than noise, which is dim, short and seldom seen so often.
     noise: float = 2.5   # of any piece, against paint
     brightness: float = 4.2   # per threshold that it is brighter than that; twice the threshold counts at most
-    seen_often: float = 0.3   # per standard error by which all views together saw it brighter than its surroundings,
+    seen_often: float = 0.45   # per standard error by which all views together saw it brighter than its surroundings,
     usual_sigmas: float = 8.0   # beyond so many; twice as many count at most
     per_length: float = 2.0   # per m of length,
     usual_length: float = 0.6   # beyond so many m,
@@ -398,7 +395,7 @@ class NOISY:
     sharp: float = 4.0   # of narrow pieces with a sharp rim
     per_fading: float = 10.0   # times the share of the contrast that is left just beside it
     per_width: float = 20.0   # per m where it is thickest,
-    usual_width: float = 0.30   # beyond so many m
+    usual_width: float = 0.40   # beyond so many m; stop lines have 0.50 m, of which the rim is dim
     # Than glare, which is bright from one place only: a nat for each standard error,
     sigmas_of_glare: float = 3.0   # beyond so many.
     # Than what shines beneath a parked car.

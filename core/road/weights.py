@@ -359,7 +359,6 @@ class RETURN:
     slope_length: float = 3.0   # m before a curb, where the slope of the road is taken
     min_slope_cells: int = 4   # cells with ground that this needs
     min_road_behind: float = 2.0   # m of ground as low as the road that lie behind an island
-    island_line_distance: float = 0.25   # m from a line about an island within which a point lies on it
     # far sides
     edge_reach: float = 0.25   # m either way of the last raised cell within which the edge of the top lies
     edge_half_length: float = 0.15   # m either way along the edge of the points that show it

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...common.arrays import Rows
+from ...common.arrays import Rows, mask_runs
 from ...countries.catalogue import NEUTRAL
 from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.records import FAR
@@ -61,9 +61,12 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
                       pavement: CrossSections | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. A line that goes on behind a hatched area may bound
+    lanes beside the area, too, unseen.
     """
     count = len(lines.s)
+    if hatching is not None:
+        lines = replace(lines, d=_over_areas(lines.d, hatching))
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
     usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
     drawn, owner = lines.drawn.values, lines.d.spans.owner
@@ -93,6 +96,19 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
                       found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
+
+
+def _over_areas(d, hatching):
+    """Offsets of lines, led over the hatched areas on which they are interrupted as the lines lie that are not."""
+    values, hatched = d.values.copy(), np.isin(np.arange(d.spans.stations), hatching.spans.station[np.isfinite(hatching.values)])
+    for first, end in mask_runs(np.isnan(values)):
+        stations = np.append(station := d.spans.station[first - 1:end], station[-1] + 1)
+        if hatched[stations].any():
+            beside = d[d.spans.near(stations[0], stations[-1])[:, None], stations]
+            beside = beside[np.isfinite(beside).all(axis=1)]
+            course = beside.mean(axis=0) if len(beside) else np.zeros(len(stations))
+            values[first:end] = (course + np.interp(stations, stations[[0, -1]], values[[first - 1, end]] - course[[0, -1]]))[1:-1]
+    return d.like(values, np.nan)
 
 
 def _bare_borders(d):

@@ -269,6 +269,17 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
     return RowTable.of_rows(borders_found, len(s))
 
 
+def hatched_areas(markings: MarkingObjects, frame: RoadFrame, road: int) -> list[np.ndarray]:
+    """(V, 2) outlines, by station and offset in m, of the hatched areas of a road, from border to border as of `borders_of_hatching`."""
+    ends = markings.extent[(markings.road == road) & (markings.kind == "hatch"), :2]
+    if not len(ends := ends[np.isfinite(ends[:, 0])]):
+        return []
+    s = np.arange(ends.min(), ends.max() + STATION_STEP, STATION_STEP)
+    borders = borders_of_hatching(markings, frame, road, s)
+    sides = [np.c_[s, borders[row, :]] for row in range(len(borders))]
+    return [np.concatenate([left, right[::-1]])[np.isfinite(np.r_[left[:, 1], right[::-1, 1]])] for left, right in zip(sides[::2], sides[1::2])]
+
+
 def _meeting(areas, shapes):
     """For each area the numbers of the shapes that meet it, ascending."""
     numbers: list[list[int]] = [[] for _ in areas]

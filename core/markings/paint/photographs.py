@@ -92,7 +92,7 @@ def _asphalt(brightness, ground):
         return np.where(even > PHOTOGRAPHS.painted_square * dark, (high + sigmas[1] * dark, dark), (usual + sigmas[3] * even, even))
 
     middle, spread = of_squares(brightness - ground, shares, measures)
-    return ground + middle, np.maximum(spread, np.float32(PHOTOGRAPHS.least_scatter * median(brightness[np.isfinite(brightness)])))
+    return ground + middle, np.maximum(spread, np.float32(PHOTOGRAPHS.least_scatter * max(median(brightness[np.isfinite(brightness)]), 1.0)))
 
 
 def _filled(values):

@@ -18,7 +18,8 @@ from .steps import PlanSteps
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
-    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
+    """Main curbs of a road and the first free chain number: side -> (N, 4) station, offset, height above the expected road in m, and 1 where it was
+    measured, 0 where it is hidden; by station."""
     main, curbs = {}, curb_points[curb_points.road == road]
     for side in SIDE_SIGNS:
         of_side = curbs[(curbs.side == side) & (curbs.part == "bottom")]
@@ -40,7 +41,7 @@ def usual_height(curb_points: CurbPoints) -> float:
 class SearchLimit:
     """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
 
-    points : (N, 4) of the main curb, as of `find_curb_returns`
+    points : (N, 4) of the main curb, as of `main_curbs_of`
     sign : of the side's offsets
     """
 
@@ -122,12 +123,6 @@ class KnownPlaces:
 
     def __init__(self, places: np.ndarray):
         self._trees = [cKDTree(places)]
-
-    def __getstate__(self) -> dict:
-        return dict(places=np.concatenate([tree.data for tree in self._trees]))
-
-    def __setstate__(self, state: dict) -> None:
-        KnownPlaces.__init__(self, **state)
 
     def and_places(self, x: np.ndarray, y: np.ndarray) -> KnownPlaces:
         """These and (N,) further places; what is known of these is not made anew for every few that come."""

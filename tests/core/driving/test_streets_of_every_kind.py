@@ -98,6 +98,19 @@ def test_no_lane_leads_over_the_hatched_island_between_two_directions():
     assert lanes_of(street, markings=bars) == {-3.5: 1, 3.5: -1}
 
 
+def test_lanes_keep_their_width_past_hatching_half_a_metre_either_side_of_a_line_that_goes_on_behind_it():
+    street = Street(vehicle=-1.75, again=(1.75,))
+    for number, offset in enumerate((3.5, -3.5, 0.0), start=1):
+        for first, last in ((5.0, 115.0),) if offset else ((5.0, 46.0), (74.0, 115.0)):
+            street.paint(offset, first, last, kind="edge" if offset else "centre", line=number)
+    bars = painted(street, *((s, s + 0.5, -0.5, 0.5, "hatch") for s in np.arange(47.0, 73.0, 1.5)))
+    lines = list(street.lanes(markings=bars)[0])
+    for way in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == way]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=1.0)
+        assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.02
+
+
 def test_the_exit_lane_of_a_carriageway_goes_the_way_of_the_others():
     street = Street(length=160.0, vehicle=-1.9).paint(3.75, kind="edge").paint(0.0, pattern="dashed")
     street.paint(-3.75, 5.0, 60.0, kind="edge").paint(-3.75, 60.0, 155.0, pattern="dashed").paint(-7.4, 60.0, 155.0, kind="edge")

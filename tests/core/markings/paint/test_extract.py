@@ -143,6 +143,18 @@ def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_
     assert len(np.unique(found.s[on_line] // 0.5)) >= 98
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_specks_in_black_photographs_are_no_paint_and_a_line_before_and_behind_them_is(tmp_path):
+    line, grain = strip(0, 60, 1.0, 1.15), gaussian_filter(np.random.default_rng(1).normal(size=(3100, 800)), 2.0)
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
+    specks = np.random.default_rng(3).random(len(s)) < 0.001
+    bright = np.where(line(s, d), 1.8, 1.0) * ASPHALT * (1.0 + rough) * ((s < 15) | (s > 45) | specks)
+    found = found_on(records_at(FRAME, s, d, bright, 4.0), tmp_path)
+    assert strip(0, 60, 0.95, 1.2)(found.s, found.d).mean() > 0.98
+    assert {0, 1, 2, 9, 10, 11} <= set(np.unique(found.s // 5))
+
+
 def test_a_line_along_the_rim_of_a_patch_is_paint(tmp_path):
     line = strip(20, 50, 1.0, 1.15)
     found = found_on(street(FRAME, [line], level=lambda s, d: np.where((s > 30) & (s < 36) & (d > -2) & (d < 1), 1.35, 1.0)), tmp_path)
