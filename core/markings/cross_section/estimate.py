@@ -36,7 +36,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
@@ -227,6 +227,9 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     narrow, beyond = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end]
     parting = (beyond == FIRST + SECOND - lane) & c.painted[i, m] & c.painted[i, end]
     np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -weights.median_between * parting))
+    # where one border of it has no line, the other one often has none either, on roads that have medians: with lanes beside each other either way
+    median = (beyond == FIRST + SECOND - lane) & (np.minimum(ahead, total - ahead) > 1)[i, k]
+    np.add.at(cost, (i, k), (weights.bare_too - weights.bare[EDGE_LINE]) * median * (c.made_of[i, m] == BARE) * (c.made_of[i, end] == BARE))
     return cost * c.observations(weights)[:, None]
 
 

@@ -23,7 +23,7 @@ from ..road_grid import CELL_SIZE
 from ..weights import EVIDENCE
 from .candidates import Candidates
 from .sections import STATION_STEP
-from .weights import UNPAINTED
+from .weights import BARE, UNPAINTED
 
 _known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
 
@@ -190,20 +190,24 @@ def _divided(candidates, offsets, directions, of_road):
 
     Where the surface ends so far away that it is looked at no farther, the road may go on.
     """
-    ends = candidates.valid & UNPAINTED[candidates.made_of] & (np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane)
+    ends = candidates.valid & UNPAINTED[candidates.made_of] & (candidates.made_of != BARE)
+    ends &= np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane
     oncoming = offsets[of_road:][~np.isin(directions[of_road:], directions[:of_road])][..., None]
     with np.errstate(invalid="ignore"):   # NaN where it was not driven
         between = ends & (candidates.left * np.sign(oncoming) > 0) & (np.abs(candidates.left) < np.abs(oncoming))
     return (between & (np.abs(oncoming) > EVIDENCE.own_road)).any(axis=(0, 2)) & (len(set(directions[:of_road].tolist())) == 1)
 
 
-def _of_interval(candidates, s, arrows):
-    """Arrows on the road with the interval in place of the station."""
+def _of_interval(c, s, arrows):
+    """Arrows on the road with the interval in place of the station, as far from the boundaries beside them as they lie where these are on average."""
     if arrows is None:
         return np.empty((0, 3))
     arrows = arrows[(arrows[:, 0] >= s[0]) & (arrows[:, 0] <= s[-1])]
-    interval = np.searchsorted(s[candidates.first], arrows[:, 0], side="right") - 1
-    return np.c_[interval.clip(0), arrows[:, 1:]]
+    intervals = (np.searchsorted(s[c.first], arrows[:, 0], side="right") - 1).clip(0)
+    share = (arrows[:, 0] - s[c.first[intervals]]) / np.maximum(s[c.last[intervals]] - s[c.first[intervals]], STATION_STEP)
+    moved = [np.interp(-d, -c.left[k][c.valid[k]], c.drift[k][c.valid[k]] @ (1 - part, part))
+             for k, d, part in zip(intervals.tolist(), arrows[:, 1].tolist(), share.tolist())]
+    return np.c_[intervals, arrows[:, 1] - np.array(moved), arrows[:, 2]]
 
 
 def _stop_lines(candidates, s, markings, road):
