@@ -42,8 +42,9 @@ def road_heights(road_points: RoadPoints | None, roads: Sequence[tuple[int, np.n
     for of_road, (road, s, tracks) in zip(result, roads):
         spans = spans_of(tracks)
         points += sum(road_points.store.size(road, number) for number in road_points.sections(road))
-        for first in range(0, len(s), size):
-            last = min(first + size, len(s)) - 1
+        # a grid that begins elsewhere has the same windows
+        for end in range(size - int(np.rint(s[0] / STATION_STEP)) % size, len(s) + size, size):
+            first, last = max(end - size, 0), min(end, len(s)) - 1
             inside = [(k, max(first, tracks[k].first), min(last, tracks[k].last)) for k in spans.near(first, last).tolist()]
             if inside:
                 sections = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]

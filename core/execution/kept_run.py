@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class KeptRun:
-    """The last result of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
+    """The last two results of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
 
     phases, free : the Keep of these runs, and what frees the disk space of their points
     """
@@ -23,7 +23,7 @@ class KeptRun:
         self.wanted, self._in_use = False, threading.Lock()
         self.phases: Keep | None = None
         self.free: Callable[[], None] = lambda: None
-        self._results: dict[str, tuple[str, Any]] = {}
+        self._results: dict[str, dict[str, Any]] = {}   # of each stage, the last one at the end
 
     def end(self) -> None:
         """Keep no run any more, and free the disk space of the last one."""
@@ -46,22 +46,26 @@ class KeptRun:
         self._results, self.phases, self.free = {}, None, lambda: None
 
     def known(self, stage: str, digest: str) -> bool:
-        """Whether the result of a stage is here; where that of the first stage is another one, all go."""
-        if stage in self._results and self._results[stage][0] == digest:
-            return True
-        if stage == next(iter(self._results), ""):
+        """Whether the result of a stage is here, which is the last one then; where that of the first stage is another one, all go."""
+        results = self._results.get(stage, {})
+        if digest in results:
+            results[digest] = results.pop(digest)
+        elif stage == next(iter(self._results), ""):
             self.drop()
-        return False
+        return digest in results
 
     def result(self, stage: str) -> Any:
-        return self._results[stage][1]
+        return next(reversed(self._results[stage].values()))
 
     def before(self, stage: str) -> Any:
-        """The result of a stage that the next one is made from, and is no result any more; None where there is none."""
-        return self._results.pop(stage, ("", None))[1]
+        """The last result of a stage that the next one is made from, and is no result any more; None where there is none."""
+        return self._results[stage].popitem()[1] if self._results.get(stage) else None
 
     def keep(self, stage: str, digest: str, result: Any) -> None:
-        self._results[stage] = digest, result
+        results = self._results.setdefault(stage, {})
+        results[digest] = result
+        if len(results) > 2:
+            del results[next(iter(results))]
 
 
 WINDOW = KeptRun()   # of the program's window, which wants it

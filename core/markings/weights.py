@@ -39,6 +39,11 @@ class _AsphaltWeights:
     most_of_letters: float = 0.65   # of a piece that strokes cover at most: a bright slab has a dark rim, too
     letters_asphalt: float = 1 / 3   # of the darker cells among letters that are no brighter than the asphalt of the road
     patch_tail: float = 3.0   # of its own spreads: how far the brightest cells of a patch lie above its median
+    # limits of the threshold in spreads above the median of asphalt; the lowest where no bin shows paint, and on averages of noisy points
+    lowest: float = 3.0
+    highest: float = 8.0
+    evidence: float = 120.0   # spreads, summed over the cells of a piece: noise of asphalt reaches it once or twice on 1,000 m2
+    close: float = 0.20   # m, gaps along the road that are closed
     min_bin_width: float = 0.75   # m
     max_bin_width: float = 3.0   # m
     min_bin_cells: int = 500   # below which a bin joins its neighbour
@@ -289,10 +294,7 @@ class SELECTION:
     min_twin_paint: float = 4.0   # m of paint: a shorter line beside another is its ragged edge, however short the other is there
     max_ragged_share: float = 0.35   # of a line's length: less paint beside a line than this is no second line but its ragged edge
     max_neighbour_offset: float = 8.0   # m across: a line this near starts and ends where this one does
-    max_bar_length: float = 4.0   # m along the road: what is called hatching and is longer is no single bar of it
     max_bar_end_offset: float = 0.35   # m between the end of a bar and the outline
-    max_bar_pitch: float = 3.0   # m from bar to bar along an outline
-    min_bars: int = 4   # that make an outline
     # Solid or dashed.
     max_worn_hole: float = 0.8   # m: a shorter hole is wear within a dash
     min_gap_per_dash: float = 0.4   # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
@@ -379,7 +381,7 @@ class NOISY:
     # Nats by which such a piece is more likely paint than noise, which is dim, short and seldom seen so often.
     noise: float = 2.5   # of any piece, against paint
     brightness: float = 4.2   # per threshold that it is brighter than that; twice the threshold counts at most
-    seen_often: float = 0.3   # per standard error by which all views together saw it brighter than its surroundings,
+    seen_often: float = 0.45   # per standard error by which all views together saw it brighter than its surroundings,
     usual_sigmas: float = 8.0   # beyond so many; twice as many count at most
     per_length: float = 2.0   # per m of length,
     usual_length: float = 0.6   # beyond so many m,
@@ -398,7 +400,7 @@ class NOISY:
     sharp: float = 4.0   # of narrow pieces with a sharp rim
     per_fading: float = 10.0   # times the share of the contrast that is left just beside it
     per_width: float = 20.0   # per m where it is thickest,
-    usual_width: float = 0.30   # beyond so many m
+    usual_width: float = 0.40   # beyond so many m; stop lines have 0.50 m, of which the rim is dim
     # Than glare, which is bright from one place only: a nat for each standard error,
     sigmas_of_glare: float = 3.0   # beyond so many.
     # Than what shines beneath a parked car.
@@ -425,6 +427,7 @@ class PHOTOGRAPHS:
     beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
     most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
     sun_squares: float = 8.0   # squares of 20 cm: standard deviation of the mean that tells how bright asphalt in the sun is nearby
+    two_levels: float = 0.72   # of the variance, between shade and sun: of one level that scatters it is two thirds
     paint_step: float = 0.5   # of logarithms of brightness from asphalt to paint, to which that of the survey is drawn
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third

@@ -281,7 +281,6 @@ class RETURN:
     least_behind_apart: float = 0.3   # or up to 0.27, and at curbs 0.46 to 0.9, or 0.18 with a hedge on them
     max_step_spacing: float = 0.6   # m between the steps of a line, on average: scan lines lie apart
     min_road_cosine: float = np.cos(np.radians(45.0))   # of the angle between a line and the road, above which it is the road's own curb
-    main_curb_overlap: float = 0.5   # m along the road that a piece of main curb may lie beside another
     min_parallel_cosine: float = np.cos(np.radians(20.0))   # of the angle between a line and the road, above which it runs along the road
     max_straight_deviation: float = 0.05   # m off its chord within which a curb that left the road is straight
     min_straight_length: float = 2.0   # m of straight curb that make a side street
@@ -304,7 +303,6 @@ class RETURN:
     section_margin: float = 2.0   # m of road on either side of a section that its own steps need
     noisy_raster_share: float = 0.12   # share of the least curb height that heights within a cell scatter, above which they are averaged
     view_length: float = 5.0   # m ahead of the vehicle and behind it, that part what is seen near from what is seen far
-    min_averaging_points: int = 6   # points in a cell, on average, that averaging needs
     main_curb_distance: float = 0.25   # m from a main curb within which a step belongs to it
     led_progress: float = 0.9   # share of the work after which faint curbs are looked for
     max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again
@@ -362,7 +360,6 @@ class RETURN:
     slope_length: float = 3.0   # m before a curb, where the slope of the road is taken
     min_slope_cells: int = 4   # cells with ground that this needs
     min_road_behind: float = 2.0   # m of ground as low as the road that lie behind an island
-    island_line_distance: float = 0.25   # m from a line about an island within which a point lies on it
     # far sides
     edge_reach: float = 0.25   # m either way of the last raised cell within which the edge of the top lies
     edge_half_length: float = 0.15   # m either way along the edge of the points that show it
@@ -394,7 +391,6 @@ class RETURN:
     max_height_share: float = 1.5   # to
     min_level_share: float = 0.75   # of the points on either side that are nearer to their own level than to the other
     growth: float = 1.0   # m by which the fitted length grows
-    known_curb_distance: float = 0.25   # m within which a curb is one that is known already
     step_spacing: float = 0.5   # m between the places that are returned
     cell_along: float = 0.5   # m along, and
     cell_across: float = 0.1   # m across, cells in which dense points are averaged: their errors are alike

@@ -99,8 +99,10 @@ class ClusteredStreet:
         markings = Features("PolygonZ", MARKINGS)
         for k, row in enumerate(self.rows):
             mine = inside & (cluster == k + 1)
-            outline = shapely.force_3d(shapely.convex_hull(shapely.multipoints(place[mine])), UP)
-            markings.add(outline, road=0, cluster=k + 1, station_m=float(station[mine].min()),
+            # half a metre at a time, so that it bends with the street; cells of an image reach 2 cm beyond the paint
+            steps = np.split(place[mine][order := np.argsort(s[mine])], np.flatnonzero(np.diff(s[mine][order] // 0.5)) + 1)
+            outline = shapely.union_all(shapely.buffer(shapely.convex_hull(list(map(shapely.multipoints, steps))), 0.02, join_style="mitre"))
+            markings.add(shapely.force_3d(outline, UP), road=0, cluster=k + 1, station_m=float(station[mine].min()),
                          offset_m=float(np.median(offset[mine])), **row)
         return fit_marking_lines(points, MarkingObjects.from_features(markings, self.frame), self.frame, settings, progress, edges)
 

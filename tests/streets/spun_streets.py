@@ -14,26 +14,25 @@ NOISE = 0.003   # m, of heights
 ELEVATIONS = np.radians(np.linspace(-26.0, -7.0, BEAMS))
 
 
-def drive(rolling=True):
+def drive(length=LENGTH):
     """A drive to the east in a vehicle that rolls and pitches by a degree."""
-    time = np.arange(0.0, LENGTH / SPEED + 0.05, 0.05)
-    roll, pitch = (rolling * np.sin(time), rolling * np.cos(1.7 * time))
+    time = np.arange(0.0, length / SPEED + 0.05, 0.05)
     return Trajectory(1000 + time, SPEED * time + 500_000, np.full(len(time), 5_400_000.0), np.full(len(time), 100 + HEIGHT),
-                      roll, pitch, np.full(len(time), 90.0))
+                      np.sin(time), np.cos(1.7 * time), np.full(len(time), 90.0))
 
 
-def spun(paint=None, by_turn=False, unequal=True, seed=5, section_length=20.0, height=None, covered=None, glare=None, noisy=False):
+def spun(paint=None, by_turn=False, unequal=True, length=LENGTH, section_length=20.0, height=None, covered=None, glare=None, noisy=False):
     """Road points of a spinning scanner and its frame; `by_turn` brings each turn to the place of its middle, as clouds of frames do.
 
     paint, covered : functions of places; height : of places, metres
     noisy : whether beams differ, and points scatter, as much as asphalt is bright
     glare : of places and the turn's number, how much brighter asphalt looks then, in the scanner's 256 levels
     """
-    rng = np.random.default_rng(seed)
-    trajectory = drive()
+    rng = np.random.default_rng(5)
+    trajectory = drive(length)
     frame = build_frame(trajectory)
     angle = np.arange(0, 2 * np.pi, np.radians(0.6))
-    turns = np.arange(0.0, LENGTH / SPEED - TURN / 2, TURN)
+    turns = np.arange(0.0, length / SPEED - TURN / 2, TURN)
     turn, azimuth, beam = (a.ravel() for a in np.meshgrid(turns, angle, np.arange(BEAMS), indexing="ij"))
     time = turn + TURN * azimuth / (2 * np.pi)
     seen = turn + TURN / 2 if by_turn else time
@@ -46,7 +45,7 @@ def spun(paint=None, by_turn=False, unequal=True, seed=5, section_length=20.0, h
     gain = np.where(unequal, rng.uniform(-24 if noisy else -14, 8, BEAMS), 0.0)
     value = 28 + gain[beam] + rng.normal(0, 5 if noisy else 3, len(x)) + (np.where(paint(x, y), 25, 0) if paint else 0) \
         + (glare(x, y, np.rint(turn / TURN)) if glare else 0)
-    kept = (np.abs(y) < HALF) & (x > 0) & (x < LENGTH)
+    kept = (np.abs(y) < HALF) & (x > 0) & (x < length)
     records = np.zeros(kept.sum(), ROAD_POINT)
     z = 100 - frame.origin[2] + (height(x, y) if height else np.zeros(len(x))) + rng.normal(0, NOISE, len(x))
     for name, values in (("x", x), ("y", y), ("s", x), ("d", y), ("z", z)):

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...common.arrays import Rows
+from ...common.arrays import Rows, mask_runs
 from ...countries.catalogue import NEUTRAL
 from ...survey.frame.row_table import RowTable, stacked
 from ...survey.store.records import FAR
@@ -61,9 +61,12 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
                       pavement: CrossSections | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines.
 
-    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it.
+    Where an edge of the pavement was seen beside an end of the surface, the surface ends at it. A line that goes on behind a hatched area may bound
+    lanes beside the area, too, unseen.
     """
     count = len(lines.s)
+    if hatching is not None:
+        lines = replace(lines, d=_over_areas(lines.d, hatching))
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
     usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
     drawn, owner = lines.drawn.values, lines.d.spans.owner
@@ -95,8 +98,21 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
                       found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
 
 
+def _over_areas(d, hatching):
+    """Offsets of lines, led over the hatched areas on which they are interrupted as the lines lie that are not."""
+    values, hatched = d.values.copy(), np.isin(np.arange(d.spans.stations), hatching.spans.station[np.isfinite(hatching.values)])
+    for first, end in mask_runs(np.isnan(values)):
+        stations = np.append(station := d.spans.station[first - 1:end], station[-1] + 1)
+        if hatched[stations].any():
+            beside = d[d.spans.near(stations[0], stations[-1])[:, None], stations]
+            beside = beside[np.isfinite(beside).all(axis=1)]
+            course = beside.mean(axis=0) if len(beside) else np.zeros(len(stations))
+            values[first:end] = (course + np.interp(stations, stations[[0, -1]], values[[first - 1, end]] - course[[0, -1]]))[1:-1]
+    return d.like(values, np.nan)
+
+
 def _bare_borders(d):
-    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside the same line."""
+    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside it or on the road."""
     row, station = d.spans.owner, d.spans.station
     order = np.lexsort((-d.values, station))
     order = order[np.isfinite(d.values[order])]
@@ -104,7 +120,7 @@ def _bare_borders(d):
     room = -np.diff(d.values[pairs], axis=0)[0]
     lane = (room >= NEUTRAL.narrowest_lane) & (room <= NEUTRAL.widest_lane)
     count, total = (np.bincount(row[pairs[:, lane]].ravel(), np.tile(values, 2), len(d)) for values in (np.ones(lane.sum()), room[lane]))
-    width = np.where(count > 0, total / np.maximum(count, 1), np.nan)[row]
+    width = np.where(count > 0, total / np.maximum(count, 1), total.sum() / count.sum() if lane.any() else np.nan)[row]
     borders = []
     for beside, sign in zip(pairs, (-1, 1)):
         usual_there = width[beside]

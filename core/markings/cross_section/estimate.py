@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import islice
 
 import numpy as np
@@ -35,7 +36,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
@@ -45,10 +46,10 @@ LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 
 class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
-    sureness : (I, K) the same as far as it was seen here, where what is laid out alike along the road counts once
-    once : (I, K) nats of the most probable sequence through each as far as it was seen here, as `sureness` counts that; inf where nothing is known
-    second : (I, K) by how many nats the most probable sequence through each is behind the best one, without names, see `behind_best`; inf where
-        nothing is known
+    lined : (N,) int, the intervals of which something is known
+    costs : (3, N, K) nats of their cross-sections: all, without names, and of the latter what was seen here: what is laid out alike counts once
+    transition, least : as of `ways` of these costs, the most probable ones
+    once : (I, K) nats of the most probable sequence through each as far as it was seen here; inf where nothing is known
     other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
     """
 
@@ -56,38 +57,51 @@ class RoadEstimate:
     lane_width: float   # metres, the usual width of a lane
     sections: Sections
     choice: np.ndarray   # (I,) which of them
-    posterior: np.ndarray   # (I, K) how probable each is
-    sureness: np.ndarray
     total: float   # nats of them
+    unnamed_total: float   # nats of the best sequence without the names of the lines
+    once_total: float   # and as far as it was seen here
     first_direction: int   # of the lanes met first from the left
     evidence: Evidence   # that it is made from
     weights: EstimateWeights
-    unnamed_total: float   # nats of the best sequence without the names of the lines
+    lined: np.ndarray
+    costs: np.ndarray
+    transition: np.ndarray
+    least: np.ndarray
     once: np.ndarray
-    second: np.ndarray
     other: RoadEstimate | None = None
     behind: float = 0.0
     opposite: RoadEstimate | None = None   # the same as far as it is a second reading, in nats as of `second`
     opposite_behind: float = 0.0
 
-    @property
-    def once_total(self) -> float:
-        """Nats of the most probable sequence as far as it was seen here."""
-        finite = self.once[np.isfinite(self.once)]
-        return float(finite.min()) if len(finite) else 0.0
+    @cached_property
+    def probability(self) -> np.ndarray:
+        """(2, I, K) how probable each cross-section is, by all that is known, and as far as it was seen here."""
+        result = np.zeros((2, *self.sections.cost.shape))
+        result[:, self.lined] = probabilities(self.costs[::2], self.transition)
+        return result
+
+    @cached_property
+    def second(self) -> np.ndarray:
+        """(I, K) by how many nats the most probable sequence through each is behind the best one, without names; inf where nothing is known."""
+        result = np.full(self.sections.cost.shape, np.inf)
+        if len(self.lined):
+            best, length = best_sequence(self.least[0, 1], self.transition), self.candidates.length[self.lined]
+            result[self.lined] = behind_best(self.costs[1], self.transition, self.least[:, 1], best, length, self.weights.repeats)
+        return result
 
 
-def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_width: float, weights: EstimateWeights, executor: Executor,
+def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int, int]], lane_width: float, weights: EstimateWeights, executor: Executor,
                        progress: Progress = Progress()) -> Iterator[RoadEstimate]:
     """The estimates of roads: cross-sections are chosen stretch by stretch, the sequence of them for a road as a whole.
 
-    roads : what may bound the lanes of each and what is seen beside it, and 1 or -1, the direction of the lanes that are met first from the left: -1
-        with traffic on the right
+    roads : what may bound the lanes of each and what is seen beside it; 1 or -1, the direction of the lanes that are met first from the left: -1
+        with traffic on the right; and how many stations its grid begins behind station 0
     lane_width : m, the usual one
     """
     pieces, counts = [], []
-    for candidates, evidence, first_direction in roads:
-        stretches, (lined, left) = _stretches(candidates), _remembered(candidates, evidence, weights)
+    for candidates, evidence, first_direction, begin in roads:
+        # a line that begins earlier changes no stretch farther on
+        stretches, (lined, left) = _stretches(candidates, begin), _remembered(candidates, evidence, weights)
         counts.append(len(stretches))
         for part in stretches:
             first, last = np.searchsorted(lined, [part.start, part.stop]).tolist()
@@ -95,12 +109,13 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int]], lane_w
             known = lined[first:last + (last > first)]
             end = max(part.stop, *(known[-1:] + 1).tolist(), 0)
             piece = candidates[part.start:end]
-            # which rows of a table they are does not matter
-            pieces.append((replace(piece, rows=np.zeros_like(piece.rows)), evidence.part(part.start, end), first_direction, part.stop - part.start,
+            # which rows and columns of a table they are does not matter
+            piece = replace(piece, rows=np.zeros_like(piece.rows), first=piece.first - piece.first[0], last=piece.last - piece.first[0])
+            pieces.append((piece, evidence.part(part.start, end), first_direction, part.stop - part.start,
                            known - part.start, left[:, first:first + max(len(known) - 1, 0)]))
     phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
     chosen = executor.run(phase, pieces, progress)
-    for road, count in zip(roads, counts):
+    for (*road, _), count in zip(roads, counts):
         check_cancelled()
         yield _estimate_of_road(*road, list(islice(chosen, count)), lane_width, weights)
 
@@ -137,28 +152,22 @@ def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, 
     sections, transition = Sections.join(of_stretches), np.concatenate(of_gaps)
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     lined = np.flatnonzero(candidates.painted.any(1) | evidence.bare)
-    choice, (posterior, sureness) = np.argmin(sections.cost, axis=1), np.zeros((2, *sections.cost.shape))
-    once, second = np.full((2, *sections.cost.shape), np.inf)
-    total = unnamed_total = 0.0
+    # what named the lines is the same evidence
+    cost = sections.cost - np.concatenate(misnamed)
+    # what is laid out alike along the road was seen once
+    seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
+    costs = np.stack([sections.cost, cost, seen_once])[:, lined]
+    least, choice, totals = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), [0.0] * 3
+    once = np.full(sections.cost.shape, np.inf)
+    once[lined] = least[:, 2].sum(axis=0)
     if len(lined):
-        # what named the lines is the same evidence
-        cost = sections.cost - np.concatenate(misnamed)
-        # what is laid out alike along the road was seen once
-        seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
-        costs = np.stack([sections.cost, cost, seen_once])[:, lined]
-        least = ways(costs, transition, np.min)
-        choice[lined], total = best_sequence(least[0, 0], transition)
-        _, unnamed_total = unnamed_best = best_sequence(least[0, 1], transition)
-        second[lined] = behind_best(costs[1], transition, least[:, 1], unnamed_best, candidates.length[lined], weights.repeats)
-        posterior[lined], sureness[lined] = probabilities(costs[::2], transition)
-        once[lined] = least[:, 2].sum(axis=0)
-    return RoadEstimate(candidates, lane_width, sections, choice, posterior, sureness, total, first_direction, evidence, weights, unnamed_total, once,
-                        second)
+        choice[lined], totals = best_sequence(least[0, 0], transition)[0], [*least[0, :2, -1].min(axis=1).tolist(), float(once.min())]
+    return RoadEstimate(candidates, lane_width, sections, choice, *totals, first_direction, evidence, weights, lined, costs, transition, least, once)
 
 
-def _stretches(candidates):
+def _stretches(candidates, begin=0):
     """Intervals by the stretch of road that they begin in; those of a stretch are looked at together."""
-    bounds = [0, *(np.flatnonzero(np.diff(candidates.first // LENGTH_OF_STRETCH)) + 1).tolist(), len(candidates.first)]
+    bounds = [0, *(np.flatnonzero(np.diff((begin + candidates.first) // LENGTH_OF_STRETCH)) + 1).tolist(), len(candidates.first)]
     return [slice(first, end) for first, end in zip(bounds, bounds[1:])]
 
 
@@ -204,6 +213,9 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     narrow, beyond = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end]
     parting = (beyond == FIRST + SECOND - lane) & c.painted[i, m] & c.painted[i, end]
     np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -weights.median_between * parting))
+    # where one border of it has no line, the other one often has none either, on roads that have medians: with lanes beside each other either way
+    median = (beyond == FIRST + SECOND - lane) & (np.minimum(ahead, total - ahead) > 1)[i, k]
+    np.add.at(cost, (i, k), (weights.bare_too - weights.bare[EDGE_LINE]) * median * (c.made_of[i, m] == BARE) * (c.made_of[i, end] == BARE))
     return cost * c.observations(weights)[:, None]
 
 
@@ -303,7 +315,7 @@ def _place_shares(estimate, lanes, chosen, part):
     """
     other = estimate.other
     best = estimate.once_total
-    parts = [(lanes.interval, lanes.d, lanes.way, estimate.posterior[lanes.interval, lanes.section], estimate.sureness[lanes.interval, lanes.section],
+    parts = [(lanes.interval, lanes.d, lanes.way, *estimate.probability[:, lanes.interval, lanes.section],
               estimate.once[lanes.interval, lanes.section] - best)]
     if other is not None:
         more = _lanes_of(other, _strips_of(other, part))

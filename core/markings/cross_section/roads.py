@@ -217,8 +217,8 @@ def _estimates(known, sides, width, weights, executor, progress, shown=False):
     """{side of traffic: {number of the road: RoadEstimate}}; `shown` : whether lines of the survey show the width."""
     widths = {number: replace(candidates, beside=lanes_beside(candidates, evidence, width, shown, weights))
               for number, (_, candidates, evidence) in known.items()}
-    results = estimates_of_roads([(widths[number], evidence, first) for first in sides for number, (_, _, evidence) in known.items()], width, weights,
-                                 executor, progress)
+    results = estimates_of_roads([(widths[number], evidence, first, int(np.rint(boundaries.s[0] / STATION_STEP)))
+                                  for first in sides for number, (boundaries, _, evidence) in known.items()], width, weights, executor, progress)
     return {first: {number: next(results) for number in known} for first in sides}
 
 

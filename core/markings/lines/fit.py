@@ -27,6 +27,7 @@ from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.estimate import boundary_uses
+from ..cross_section.evidence import hatched_areas
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import EdgeSections, sections_of_lines
 from ..cross_section.sequence import separated_kinds
@@ -36,7 +37,7 @@ from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
 from .painted_lines import PaintedLines, painted_lines_of
-from .selection import SelectedLine, hatching_bars, same_dash_pattern, select_lines
+from .selection import SelectedLine, same_dash_pattern, select_lines
 from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
 # The course of one marking line in plan and height: places from its paint, a curve through them.
@@ -346,7 +347,7 @@ def _traced(points, markings, frame, edges, settings, executor, progress):
     selected: list[tuple[int, SelectedLine]] = []
     courses: list[_Course] = []
     dropped, roads = 0, points.roads()
-    edge_lines = edges_beside(edges, roads)
+    edge_lines = edges_beside(edges, {road: hatched_areas(markings, frame, road) for road in roads})
     phase = Phase(_lines_of_road, NoSource(), (settings,), lambda item: "the marking lines of a road")
     items = Items(len(roads), lambda k: _paint_of_road(points, markings, roads[k], edge_lines[roads[k]]))
     for (of_road, places, left_out), road in zip(executor.run(phase, items, progress), roads):
@@ -362,19 +363,19 @@ PAINT_OF_LINES = "s", "d", "z", "cluster", "spacing"   # that strands are traced
 def _paint_of_road(points, markings, road, edges):
     """An item of `_lines_of_road`."""
     records, rank = line_paint(columns_of_roads(points.store, [road]), markings, road)
-    return {name: records[name] for name in PAINT_OF_LINES}, rank, edges, hatching_bars(markings, road)
+    return {name: records[name] for name in PAINT_OF_LINES}, rank, edges
 
 
-def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside, np.ndarray],
+def _lines_of_road(source: NoSource, item: tuple[dict[str, np.ndarray], np.ndarray, EdgesBeside],
                   settings: MarkingLineSettings) -> tuple[list[SelectedLine], list[tuple[np.ndarray, ...]], int]:
     """The phase that traces and links the paint of one road: its lines, places along each as of `_places`, and how many fragments were left out.
 
-    item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside; the bars as of `hatching_bars`
+    item : columns PAINT_OF_LINES of N points, and (N,) class of each, as `line_paint` gives them; the edges beside
     """
-    columns, rank, edges, bars = item
+    columns, rank, edges = item
     strands = painted_strands(Columns(columns, [(name, column.dtype) for name, column in columns.items()]), rank)
     lines, trend = _linked(strands, edges, settings)
-    selected = select_lines(lines, trend, settings.min_paint, bars, country(settings.country).longest_dash)
+    selected = select_lines(lines, trend, settings.min_paint, edges, country(settings.country).longest_dash)
     return selected, [_places(chosen.line, trend, edges, chosen.span) for chosen in selected], len(lines) - len(selected)
 
 

@@ -9,10 +9,9 @@ import numpy as np
 from ...common.parallel import check_cancelled
 from ...countries.catalogue import NEUTRAL
 from ...curves.robust import median
-from ..objects.marking_objects import MarkingObjects
 from ..weights import LINKS, SELECTION
 from .linking import CommonTrend, StretchLookup, lines_beside
-from .strands import LinkedLine
+from .strands import EdgesBeside, LinkedLine
 
 
 @dataclass
@@ -34,25 +33,18 @@ class SelectedLine:
         return self.pieces[0].first, self.pieces[-1].last
 
 
-def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
-    """(K, 4) first and last station, least and greatest offset of the bars of hatched areas of a road."""
-    extents = markings.extent[(markings.road == road) & (markings.kind.astype(str) == "hatch")]
-    return extents[extents[:, 1] - extents[:, 0] < SELECTION.max_bar_length]
-
-
-def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
+def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, edges: EdgesBeside,
                  longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing, by station.
 
     A line needs paint: `min_paint` m of it, or two dashes of a pattern. What runs close beside a much longer line is that line's ragged edge; what
-    frames a hatched area belongs to that area.
+    frames a hatched area belongs to that area. What goes on behind one is the same line, of which nothing is drawn on the area.
 
-    hatched : (K, 4) as `hatching_bars` gives them
     longest_dash : m, longer paint is solid line
     """
     if not lines:
         return []
-    bars, neighbours = hatched[np.argsort(hatched[:, :2].mean(axis=1), kind="stable")], lines_beside(lines)
+    neighbours = lines_beside(lines)
     spans = np.array([(strand.first, strand.last) for line in lines for strand in line.strands]).reshape(-1, 2)
     owner, strands = np.repeat(np.arange(len(lines)), [len(line.strands) for line in lines]), StretchLookup(*spans.T)
     parts = [stretches(line, longest_dash) for line in lines]
@@ -63,14 +55,18 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     for k, line in enumerate(lines):
         check_cancelled()
         dashed = any(stretch.dashes for stretch in parts[k])
-        if ragged[k] or _frames_hatching(line, bars) or not (line.painted >= min_paint or dashed):
+        if ragged[k] or edges.framed(line) or not (line.painted >= min_paint or dashed):
             continue
 
         def painted_beside(first, last, k=k):
             near = strands.between(first, last)
             return spans[near[(owner[near] != k) & (np.abs(level[owner[near]] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
-        selected.append(SelectedLine(line, bool(double[k]), _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)))
+        pieces = _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)
+        ends = [np.array([piece.first, piece.last]) for piece in pieces]
+        crosses = [edges.bar(s, np.interp(s, *line.by_station), hatching=True) for s in ends]
+        pieces = [piece for piece, hatched in zip(pieces, crosses) if piece.status == "measured" or not hatched]
+        selected.append(SelectedLine(line, bool(double[k]), pieces))
     return selected
 
 
@@ -113,22 +109,6 @@ def _shared(one, other):
     windows = [slice(np.searchsorted(cells, begin), np.searchsorted(cells, end, side="right")) for cells in (one, other)]
     _, a, b = np.intersect1d(one[windows[0]], other[windows[1]], assume_unique=True, return_indices=True)
     return a + windows[0].start, b + windows[1].start
-
-
-def _frames_hatching(line, bars):
-    """Whether bars, (K, 4) by the station of their middle, end at a line along most of it; an edge line beside a hatched area goes on after it."""
-    middle = bars[:, :2].mean(axis=1)
-    inside = slice(*np.searchsorted(middle, [line.first, line.last]))
-    middle, sides = middle[inside], bars[inside, 2:]
-    if len(middle) < SELECTION.min_bars:
-        return False
-    s, d, *_ = line.places
-    ends = np.abs(sides - np.interp(middle, s, d)[:, None]).min(axis=1) < SELECTION.max_bar_end_offset
-    touching = middle[ends & (middle > line.first) & (middle < line.last)]
-    if len(touching) < SELECTION.min_bars:
-        return False
-    steps = np.diff(np.sort(touching))
-    return steps[steps < SELECTION.max_bar_pitch].sum() + SELECTION.max_bar_pitch > SELECTION.min_shared_paint * (line.last - line.first)
 
 
 def _extended(drawn, parts, painted, painted_beside, line):

@@ -307,18 +307,27 @@ LINE_TO_EDGE = 4.0   # source: m between a line and the edge that it runs along:
 
 @dataclass
 class EdgesBeside:
-    """The edges along one road: the stations and offsets of each; and the islands, (V, 2) outlines by station and offset, m."""
+    """The edges along one road: the stations and offsets of each; and islands and hatched areas, (V, 2) outlines by station and offset, m."""
 
     edges: list[tuple[np.ndarray, np.ndarray]]
-    areas: Sequence[np.ndarray] = ()   # plain values: what a process is sent, and a run is known by, holds no shapes
+    islands: Sequence[np.ndarray] = ()   # plain values: what a process is sent, and a run is known by, holds no shapes
+    hatched: Sequence[np.ndarray] = ()
 
     @cached_property
     def _inner(self):
-        return shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, self.areas)), -SELECTION.max_bar_end_offset))
+        """Islands, and hatched areas, without their rims: of what is narrow, such as a line that touches a bar, nothing is left."""
+        return [shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, areas)), -SELECTION.max_bar_end_offset))
+                for areas in (self.islands, self.hatched)]
 
-    def bar(self, s: np.ndarray, d: np.ndarray) -> bool:
-        """Whether an island lies between two places, (2,) m each."""
-        return bool(len(self.areas)) and len(self._inner.query(shapely.linestrings(s, d), predicate="intersects")) > 0
+    def bar(self, s: np.ndarray, d: np.ndarray, hatching: bool = False) -> bool:
+        """Whether an island, or else a hatched area, lies between two places, (2,) m each."""
+        return len(self._inner[hatching].query(shapely.linestrings(s, d), predicate="intersects")) > 0
+
+    def framed(self, line: LinkedLine) -> bool:
+        """Whether a line is the outline of hatched areas along most of its paint; an edge line beside one goes on after it."""
+        s, d, *_ = line.places
+        near, _ = self._inner[1].query(shapely.points(s, d), "dwithin", 2 * SELECTION.max_bar_end_offset)
+        return len(np.unique(near)) > SELECTION.min_shared_paint * len(s)
 
     @cached_property
     def _spans(self):
@@ -345,11 +354,12 @@ def _edges(sections):
                 yield sections.s[first + part], d[part]
 
 
-def edges_beside(edges: RoadEdges | EdgeSections | None, roads: list[int]) -> dict[int, EdgesBeside]:
-    """EdgesBeside of every road; those of a road without edges, or where none are known, are empty."""
+def edges_beside(edges: RoadEdges | EdgeSections | None, hatched: dict[int, list[np.ndarray]]) -> dict[int, EdgesBeside]:
+    """EdgesBeside of every road, of which `hatched` holds its areas; without edges, or where none are known, there are none."""
     kinds = EdgeSections.of(edges)
     return {road: EdgesBeside([edge for sections in kinds if sections and road in sections for edge in _edges(sections[road])],
-                              _islands(kinds.curbs[road]) if kinds.curbs and road in kinds.curbs else ()) for road in roads}
+                              _islands(kinds.curbs[road]) if kinds.curbs and road in kinds.curbs else (), areas)
+            for road, areas in hatched.items()}
 
 
 def _islands(curbs):

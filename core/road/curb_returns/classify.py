@@ -111,7 +111,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
-            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], tips)
+            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, tips)
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
@@ -187,19 +187,16 @@ def _straight_part(curb):
     return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(curb))
 
 
-def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
-                          tips: cKDTree) -> list[CurbReturn]:
+def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, tips: cKDTree) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
     curb : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
-    limit : SearchLimit of that side
     tips : ends of the main curbs
     """
     along = _road_cosine(curb, s, line)
-    if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
-                                                                       np.nanmax(s) - RETURN.main_curb_overlap):
+    if np.median(along) > RETURN.min_road_cosine:
         return [CurbReturn(curb, s, d, side, "main")]
     near = tips.query(np.c_[curb.x, curb.y][[0, -1]])[0]
     # in order from the main curb outward

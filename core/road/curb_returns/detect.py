@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from ...common.progress import Progress
-from ...execution.in_step import Work, in_step
+from ...execution.in_step import in_step
 from ...survey.frame.placement import PlaceIndex
 from ...survey.frame.road import Road
 from ...survey.weights import FRAME
@@ -30,7 +30,7 @@ from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
 from .extended_curbs import FollowedEnds, followed_steps, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
-from .islands import are_replaced, far_sides, ground_behind, on_island_tops, on_main_islands
+from .islands import far_sides, ground_behind, on_island_tops, on_main_islands
 from .main_curbs import KnownPlaces, SearchLimit, line_tree, main_curbs_of, main_runs, median_distance, places_along, usual_height
 from .side_streets import with_curbs_beyond
 from .steps import PlanSteps, measure_plan_steps, step_places
@@ -45,7 +45,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
-    of an island becomes a line about that island where the road's own curb is found behind it.
+    of an island becomes a line about that island.
 
     curb_points : CurbPoints of every road, of kind main
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
@@ -56,32 +56,17 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     roads = survey.store.roads()
     on_islands, behind = on_main_islands(curb_points, survey, beside)
     mains = {road: main_curbs_of(curb_points[~on_islands], survey, road) for road in roads}
-    runs = {road: [coordinates[:2] for _, coordinates in main_runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
-    seen = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road), behind[road]) for road, (main, _) in mains.items()},
-                         settings, progress.part(0.0, RETURN.led_progress))
-    looks = {road: None if ground is None else RoadLook(ground, road) for road in roads}
-    works = [_returns_of_road(curb_points, on_islands, decimation, road, mains[road], seen[road], settings,
-                              [run for other_road in roads if other_road != road for run in runs[other_road]], looks[road]) for road in roads]
-    returns = list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0)))
-    for road, (on_island, main, chain, _), curbs in zip(roads, returns, seen_once([curbs for *_, curbs in returns])):
-        on_islands &= on_island
-        points, hidden = _points_of_road(survey, road, curbs, chain, main, beside, curb_points.crs)
+    runs = {road: main_runs(main, survey.frame.road(road)) for road, (main, _) in mains.items()}
+    searches = {road: _PlanSearch.of(main, survey.frame.road(road), runs[road], behind[road]) for road, (main, _) in mains.items()}
+    seen = _steps_in_plan(decimation, searches, settings, progress.part(0.0, RETURN.led_progress))
+    works = [_returns_of_road(decimation, road, runs, searches[road], seen[road], settings, usual_height(curb_points[curb_points.road == road]),
+                               None if ground is None else RoadLook(ground, road)) for road in roads]
+    for road, curbs in zip(roads, seen_once(list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))))):
+        points, hidden = _points_of_road(survey, road, curbs, *mains[road][::-1], beside, curb_points.crs)
         lines += points
         parts += points + hidden
     progress.info(f"Curbs away from the road's direction: {_lengths(lines) or 'none'}.")
     return CurbPoints.join([curb_points[~on_islands], *parts], curb_points.crs)
-
-
-def _returns_of_road(curb_points, on_islands, decimation, road, main_and_chain, seen, settings, elsewhere, look):
-    """The work on one road: which main curbs are islands, the main curb, the number of the next chain and the curbs away from it."""
-    survey, of_road, (main, chain) = decimation.survey, curb_points.road == road, main_and_chain
-    usual = usual_height(curb_points[of_road])
-    curbs = yield from find_curb_returns(decimation, road, main, seen, settings, usual, elsewhere, look)
-    if not are_replaced(curb_points[of_road & on_islands], curbs):
-        main, chain = main_curbs_of(curb_points, survey, road)
-        again = _steps_in_plan(decimation, {road: _PlanSearch.of(main, survey.frame.road(road))}, settings)
-        return ~of_road, main, chain, (yield from find_curb_returns(decimation, road, main, again[road], settings, usual, elsewhere, look))
-    return np.ones(len(of_road), bool), main, chain, curbs
 
 
 def seen_once(curbs_of_roads: Sequence[Sequence[CurbReturn]]) -> list[list[CurbReturn]]:
@@ -137,48 +122,42 @@ class _PlanSearch:
     behind: np.ndarray
 
     @classmethod
-    def of(cls, main: Mapping[str, np.ndarray], line: Road, behind: np.ndarray = np.empty((2, 0))) -> _PlanSearch:
-        """The search beside the main curbs of a road, as of `find_curb_returns`."""
-        lines = [coordinates for _, coordinates in main_runs(main, line)]
+    def of(cls, main: Mapping[str, np.ndarray], line: Road, runs: Sequence[tuple], behind: np.ndarray) -> _PlanSearch:
+        """The search beside the main curbs of a road, as of `main_curbs_of` and of `main_runs`."""
         return cls({side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()},
                    KnownPlaces(places_along(line, main, CURBS.max_joined_gap)),
                    PlaceIndex(places_along(line, main, RETURN.min_opening_length), FRAME.corridor),
-                   FollowedEnds.of(lines), behind)
+                   FollowedEnds.of([coordinates for _, coordinates in runs]), behind)
 
 
-def _steps_in_plan(decimation, searches, settings, progress=Progress()):
-    """{number of a road: its _PlanSearch, and what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
+def _steps_in_plan(decimation, searches, settings, progress):
+    """{number of a road: what `plan_steps_of_section` finds on it}; `searches` : {number of a road: _PlanSearch}"""
     sections = [(road, *section) for road in searches for section in work_sections(decimation.survey, road, settings.profile_width)]
     phase = phase_along(plan_steps_of_section, decimation, (searches, settings), settings.profile_width, _join_parts)
     parts: dict[int, list] = {road: [] for road in searches}
     for of_section, (road, *_) in zip(decimation.executor.run(phase, sections, progress), sections):
         parts[road].append(of_section)
-    return {road: (searches[road], _join_parts(of_road)) for road, of_road in parts.items()}
+    return {road: _join_parts(of_road) for road, of_road in parts.items()}
 
 
-def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray],
-                      seen: tuple[_PlanSearch, tuple[PlanSteps, np.ndarray, np.ndarray] | None], settings: CurbSettings, usual: float = np.nan,
-                      elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = (), look: RoadLook | None = None) -> Work:
+def _returns_of_road(decimation, road, runs, search, seen, settings, usual, look):
     """Part of a work: corners, side streets and islands of one road, a list of CurbReturn.
 
-    main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
-        1 where it was measured and 0 where it is hidden
-    seen : as of `_steps_in_plan`
+    runs : of every road, as of `main_runs`
+    search, seen : where steps were looked for on it, and what `plan_steps_of_section` found
     usual : m, height of the road's own curbs
-    elsewhere : (x, y) of the main curbs of other roads, local m
     look : RoadLook of the road; without, a curb may lie anywhere
     """
-    search, measured = seen
-    if measured is None:
+    if seen is None:
         return []
-    line, limits, known_places = decimation.survey.frame.road(road), search.limits, search.known
-    runs, (steps, falls, scanner_noise) = main_runs(main, line), measured
+    line, (steps, falls, scanner_noise) = decimation.survey.frame.road(road), seen
+    elsewhere = [(x, y) for other_road, of_other in runs.items() if other_road != road for _, (x, y, _) in of_other]
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)
               and has_road_before(steps[c.steps], line, look)]
-    curbs = classify_curbs(chains, steps, falls, runs, line, limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
+    curbs = classify_curbs(chains, steps, falls, runs[road], line, search.limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs, decimation, road, noisy, known_places, limits, settings)
-    return (yield from with_curbs_beyond(curbs, decimation, road, known_places))
+    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, settings)
+    return (yield from with_curbs_beyond(curbs, decimation, road, search.known))
 
 
 def _noisy_sections(sections, line, steps, scanner_noise, settings):
@@ -218,8 +197,7 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
+    noisy = raster.noise > RETURN.noisy_raster_share * clear
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)

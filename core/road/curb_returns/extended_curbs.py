@@ -12,7 +12,7 @@ of the errors does not average out. It must do so along both halves of the arc. 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
 from .ground_raster import GroundRaster, averaged, ground_raster
-from .main_curbs import KnownPlaces, SearchLimit, tips_of
+from .main_curbs import KnownPlaces, tips_of
 from .steps import PATCH_HALF_WIDTH, PlanSteps, points_about, steps_of_points
 from .tracking import LineEnds, PlanStepChain
 
@@ -52,19 +52,6 @@ class _Arc:
         middle, chord = self.heading + 0.5 * self.bend * t, t * np.sinc(0.5 * self.bend * t / np.pi)
         return _Arc(self.x + chord * np.cos(middle), self.y + chord * np.sin(middle), self.h, self.heading + self.bend * t, self.bend, self.uphill)
 
-    def moved(self, average: _Average) -> _Arc:
-        """The arc along which the step was seen."""
-        across, up = self.uphill * average.shift, self.uphill
-        return _Arc(self.x - across * np.sin(self.heading), self.y + across * np.cos(self.heading), average.bottom,
-                    self.heading + up * average.turn, self.bend + up * average.bend, up)
-
-    def step(self, average: _Average) -> PlanSteps:
-        """The step in its middle, where its place is surest."""
-        middle = self.onward(0.5 * RETURN.led_length)
-        values = (middle.x, middle.y, -self.uphill * np.sin(middle.heading), self.uphill * np.cos(middle.heading),
-                  self.h + 0.5 * RETURN.led_length * average.grade, average.height, 0.0, average.scatter, average.support, average.behind)
-        return PlanSteps(*(np.array([value]) for value in values))
-
     def beside(self, points: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Metres along it and uphill from it, and heights, of the points (x, y, h) beside it."""
         dx, dy = points[0] - self.x, points[1] - self.y
@@ -75,22 +62,6 @@ class _Arc:
             ahead, left = np.arctan2(self.bend * ahead, 1.0 - self.bend * left) / self.bend, 1.0 / self.bend - np.sign(self.bend) * radius
         inside = np.flatnonzero((ahead >= 0.0) & (ahead < RETURN.led_length) & (np.abs(left) < RETURN.led_length))
         return ahead.take(inside), self.uphill * left.take(inside), points[2].take(inside)
-
-
-@dataclass
-class _Average:
-    """What the ground across an arc shows."""
-
-    turn: float   # turn, bend, shift: radians, 1/m, and m uphill, by which the curb leaves the arc; positive uphill
-    bend: float
-    shift: float
-    height: float   # m, of the step
-    bottom: float   # bottom, grade: m, and m per m along, level of the road at the step where the arc begins
-    grade: float
-    scatter: float   # m, of averages about the levels
-    support: int   # support, behind: cells with ground before and behind
-    behind: int
-    good: bool   # is it a step?
 
 
 def led_on(ground: GroundRaster, end: FollowedEnds) -> PlanSteps:
@@ -110,30 +81,31 @@ def led_on(ground: GroundRaster, end: FollowedEnds) -> PlanSteps:
     steps: list[PlanSteps] = []
     trials = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
     while len(steps) * RETURN.led_step < RETURN.line_direction_length + RETURN.max_led_length:
-        average = _best_average(*arc.beside(points), arc.uphill * arc.bend, *trials)
-        if average is None or not average.good or abs(average.bottom - arc.h) > CURBS.height_tolerance + RETURN.max_height_grade * RETURN.led_step:
+        seen, step = _best_average(arc, points, *trials) or (None, None)
+        if seen is None:
             break
-        arc = arc.moved(average)
-        steps.append(arc.step(average))
-        arc, trials = arc.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
+        steps.append(step)
+        arc, trials = seen.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
     # one average at least begins beyond the end
     if len(steps) <= LEAD_IN_STEPS:
         return PlanSteps.none()
     return PlanSteps.join(steps[1:])
 
 
-def _best_average(t, u, z, bend, turns, bends, sigmas):
-    """The average across that arc, of those about one, whose levels and step explain the ground best; None where there is too little ground.
+def _best_average(arc, points, turns, bends, sigmas):
+    """That arc, of those about one, across which two levels and a step explain the ground best, and the step in its middle, where its place is
+    surest; None where it is no step that goes on from the arc, or there is too little ground.
 
-    t, u, z : (N,) m along and uphill from the arc, and heights; bend : 1/m, of the arc, positive uphill
+    turns, bends : radians and 1/m by which arcs are tried to leave it, positive uphill
     """
+    t, u, z = arc.beside(points)
     gap, fit, short, near = (int(round(v / RETURN.across_cell)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length,
                                                                           CURBS.behind_fit_length, CURBS.steep_half_width))
     road = np.flatnonzero((u > -CURBS.blurred_face_half_width - CURBS.road_fit_length) & (u < -CURBS.blurred_face_half_width))
     if len(road) < INDEPENDENT:
         return None
     turns, bends = (v.ravel() for v in np.meshgrid(turns, bends, indexing="ij"))
-    allowed = np.abs(bend + bends) <= RETURN.largest_bend
+    allowed = np.abs(arc.uphill * arc.bend + bends) <= RETURN.largest_bend
     turns, bends = turns[allowed], bends[allowed]
     # the grade along the curb
     plane, *_ = np.linalg.lstsq(np.c_[np.ones(len(road)), u[road], t[road]], z[road], rcond=None)
@@ -166,10 +138,18 @@ def _best_average(t, u, z, bend, turns, bends, sigmas):
     slopes = whole.before.slope[k, cell], whole.behind.slope[k, cell]
     sharp = whole.smooth[k, cell + near] - whole.smooth[k, cell - near] - near * RETURN.across_cell * sum(slopes)
     scatter = float(whole.scatter(cells_of_shifts)[k, shift])
+    bottom, up = float(whole.before.level[k, cell]), arc.uphill
     good = height >= least and lower_half >= RETURN.min_half_share * least and sharp >= RETURN.min_sharp_share * height \
         and scatter <= CURBS.max_averaged_scatter and max(map(abs, slopes)) <= CURBS.max_road_slope
-    return _Average(float(turns[k]), float(bends[k]), float(SHIFTS[shift] * RETURN.across_cell), height, float(whole.before.level[k, cell]),
-                    float(plane[2]), scatter, int(whole.before.n[k, cell]), int(whole.behind.n[k, cell]), bool(good))
+    if not good or abs(bottom - arc.h) > CURBS.height_tolerance + RETURN.max_height_grade * RETURN.led_step:
+        return None
+    across = up * float(SHIFTS[shift] * RETURN.across_cell)
+    seen = _Arc(arc.x - across * np.sin(arc.heading), arc.y + across * np.cos(arc.heading), bottom, arc.heading + up * float(turns[k]),
+                arc.bend + up * float(bends[k]), up)
+    middle = seen.onward(half)
+    values = (middle.x, middle.y, -up * np.sin(middle.heading), up * np.cos(middle.heading), bottom + half * float(plane[2]), height, 0.0, scatter,
+              int(whole.before.n[k, cell]), int(whole.behind.n[k, cell]))
+    return seen, PlanSteps(*(np.array([value]) for value in values))
 
 
 def _profiles(t, u, z, turns, bends, zero, cells):
@@ -215,13 +195,12 @@ LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends
 
 
 def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: PointDecimation, road: int, sections: Sequence[tuple[int, int]],
-                known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings) -> list[CurbReturn]:
+                known: KnownPlaces, settings: CurbSettings) -> list[CurbReturn]:
     """The curbs away from main curbs, and what continues faintly from them and from main curbs.
 
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
     sections : (first, last + 1) profile numbers of those where the scanner is noisy
     known : places of the main curbs
-    limits : side -> SearchLimit
     """
     if not sections:
         return list(curbs)
@@ -248,7 +227,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         line_steps = line_steps[::-1] if at_head else line_steps
         s, d = line.locate(line_steps.x, line_steps.y)
         if k < len(runs):
-            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
+            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, main_ends)
         else:
             curb = free[k - len(runs)]
             extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(line_steps, s, d, curb.side, curb.kind), at_head)

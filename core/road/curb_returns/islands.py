@@ -2,7 +2,7 @@
 
 A stretch of main curb is the side of an island where the road's curb goes on farther out before it and behind it, and where the ground
 beyond the stretch is as low as the road again before it comes to the line between these two. It is left out of the main curbs, so that
-the curb behind it and the outline of the island are looked for; where these are not found, it stays.
+the curb behind it and the outline of the island are looked for.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from ..common.curb_points import CurbPoints
 from ..common.occlusion import OcclusionGrid
 from ..common.sides import SIDE_SIGNS, expected_height
 from ..weights import CURBS, RETURN
-from .classify import CurbReturn
 from .ground_raster import GroundRaster
 from .steps import PlanSteps, line_directions, points_about
 
@@ -48,26 +47,6 @@ def on_main_islands(points: CurbPoints, survey: Survey,
                 d = points.offset[bottoms][part][down] + sign * (distance[down] + across[:, None])
                 behind[road].append(np.array(survey.frame.road(road).to_map(np.broadcast_to(s[part][down], d.shape).ravel(), d.ravel())))
     return on_islands, {road: np.concatenate(places, axis=1) for road, places in behind.items()}
-
-
-def are_replaced(points: CurbPoints, curbs: Sequence[CurbReturn]) -> bool:
-    """Were lines about the islands found again in plan, and main curbs behind them?
-
-    points : CurbPoints on sides of islands, of one road
-    curbs : list of CurbReturn, found without these points
-    """
-    bottoms = points[(points.part == "bottom") & (points.status == "measured")]
-    if not len(bottoms):
-        return True
-    islands = [np.c_[curb.steps.x, curb.steps.y] for curb in curbs if curb.kind == "island"]
-    behind = np.zeros(len(bottoms), bool)
-    for curb in curbs:
-        if curb.kind == "main":
-            behind |= (bottoms.side == curb.side) & (bottoms.station >= np.min(curb.s)) & (bottoms.station <= np.max(curb.s))
-    if not islands or np.mean(behind) < RETURN.min_island_share:
-        return False
-    distance = cKDTree(np.concatenate(islands)).query(np.c_[bottoms.x, bottoms.y])[0]
-    return bool(np.mean(distance <= RETURN.island_line_distance) >= RETURN.min_island_share)
 
 
 def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.ndarray,

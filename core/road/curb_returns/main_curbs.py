@@ -18,7 +18,8 @@ from .steps import PlanSteps
 
 
 def main_curbs_of(curb_points: CurbPoints, survey: Survey, road: int) -> tuple[dict[str, np.ndarray], int]:
-    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
+    """Main curbs of a road and the first free chain number: side -> (N, 4) station, offset, height above the expected road in m, and 1 where it was
+    measured, 0 where it is hidden; by station."""
     main, curbs = {}, curb_points[curb_points.road == road]
     for side in SIDE_SIGNS:
         of_side = curbs[(curbs.side == side) & (curbs.part == "bottom")]
@@ -40,13 +41,13 @@ def usual_height(curb_points: CurbPoints) -> float:
 class SearchLimit:
     """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
 
-    points : (N, 4) of the main curb, as of `find_curb_returns`
+    points : (N, 4) of the main curb, as of `main_curbs_of`
     sign : of the side's offsets
     """
 
     def __init__(self, points: np.ndarray, sign: int):
         self.sign = sign
-        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
+        self.s, self.u = points[:, 0], sign * points[:, 1]
         cuts = np.flatnonzero(np.diff(self.s) > RETURN.min_opening_length) + 1
         # where runs of curb begin and end, both ascending: which of them is near a place is looked up
         self.begins, self.ends = (np.array([part[k] for part in np.split(self.s, cuts) if len(part)], float) for k in (0, -1))
@@ -80,10 +81,6 @@ class SearchLimit:
             return np.ones(len(s), bool)
         k = np.searchsorted(self.begins - distance, s, side="right") - 1
         return (k < 0) | (s > self.ends[k] + distance)
-
-    def between(self, start: float, end: float) -> bool:
-        """Was a point of main curb measured between two stations?"""
-        return bool(np.searchsorted(self.seen, start, side="right") < np.searchsorted(self.seen, end))
 
 
 def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.ndarray:

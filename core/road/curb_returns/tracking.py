@@ -80,30 +80,17 @@ def _cheapest(a, b, cost, count):
 
 
 def _paths(following):
-    """Runs of a successor list: list of (indices in order, is it a ring)."""
-    count = len(following)
-    if not count:
-        return []
-    linked = np.flatnonzero(following >= 0)
-    label = linked_groups(linked, following[linked], count)
-    before = np.full(count, -1)
-    before[following[linked]] = linked
-    ring = np.ones(label.max() + 1, bool)
-    ring[label[before < 0]] = False
-    # a ring is opened at its first step
-    first = np.full(len(ring), count)
-    np.minimum.at(first, label, np.arange(count))
-    cut = first[ring]
-    before[cut] = -1
-    # steps from the head of each run, by doubling
-    rank, jump = (before >= 0).astype(np.int64), before.copy()
-    while (jump >= 0).any():
-        on = np.flatnonzero(jump >= 0)
-        rank[on] += rank[jump[on]]
-        jump[on] = jump[jump[on]]
-    order = np.lexsort((rank, label))
-    runs = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
-    return [(run, bool(ring[label[run[0]]])) for run in runs]
+    """Runs of a successor list: list of (indices in order, is it a ring), by their lowest index, at which a ring is opened."""
+    left, runs = dict.fromkeys(range(len(following))), []
+    for first in [*np.setdiff1d(np.arange(len(following)), following).tolist(), *left]:
+        run, k = [], first
+        while k in left:
+            del left[k]
+            run.append(k)
+            k = int(following[k])
+        if run:
+            runs.append((np.array(run), k == first))
+    return sorted(runs, key=lambda run: run[0].min())
 
 
 def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanStepChain]:

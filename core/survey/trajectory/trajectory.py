@@ -165,8 +165,6 @@ def _outlier_rows(trajectory):
 
 
 def _refuse_degrees(trajectory):
-    from ...io.crs import horizontal_part, parse_crs
-
     crs = parse_crs(trajectory.crs)
     if crs is not None and horizontal_part(crs).is_geographic:
         raise RoadExtractionError(f"The trajectory is in {horizontal_part(crs).name} (degrees), and the point cloud carries no CRS. Give the "

@@ -98,6 +98,19 @@ def test_no_lane_leads_over_the_hatched_island_between_two_directions():
     assert lanes_of(street, markings=bars) == {-3.5: 1, 3.5: -1}
 
 
+def test_lanes_keep_their_width_past_hatching_half_a_metre_either_side_of_a_line_that_goes_on_behind_it():
+    street = Street(vehicle=-1.75, again=(1.75,))
+    for number, offset in enumerate((3.5, -3.5, 0.0), start=1):
+        for first, last in ((5.0, 115.0),) if offset else ((5.0, 46.0), (74.0, 115.0)):
+            street.paint(offset, first, last, kind="edge" if offset else "centre", line=number)
+    bars = painted(street, *((s, s + 0.5, -0.5, 0.5, "hatch") for s in np.arange(47.0, 73.0, 1.5)))
+    lines = list(street.lanes(markings=bars)[0])
+    for way in (1, -1):
+        parts = [line for line, row in lines if row["direction"] == way]
+        assert sum(line.length for line in parts) == pytest.approx(110.0, abs=1.0)
+        assert max(np.abs(street.offsets(line) + 1.75 * way).max() for line in parts) < 0.02
+
+
 def test_the_exit_lane_of_a_carriageway_goes_the_way_of_the_others():
     street = Street(length=160.0, vehicle=-1.9).paint(3.75, kind="edge").paint(0.0, pattern="dashed")
     street.paint(-3.75, 5.0, 60.0, kind="edge").paint(-3.75, 60.0, 155.0, pattern="dashed").paint(-7.4, 60.0, 155.0, kind="edge")
@@ -340,12 +353,20 @@ def test_what_nobody_drove_between_the_solid_lines_of_two_opposite_lanes_is_a_me
     assert {round(float(np.median(street.offsets(line)))): row["direction"] for line, row in lanes} == {-2: 1, 5: -1}
 
 
-def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven():
-    """Two lanes of 3.4 m each way, dashes between those of a direction, and 2.8 m of bare asphalt between the directions."""
-    street = Street(vehicle=-3.1)
+@pytest.mark.parametrize("left_edge", ["line", "curb"])
+@pytest.mark.parametrize("median", [2.8, 3.3])
+def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven(median, left_edge):
+    """Two lanes of 3.4 m each way, dashes between those of a direction, and bare asphalt between the directions."""
+    inner, outer = median / 2 + 1.7, median / 2 + 5.1
+    street = Street(vehicle=-inner, again=(outer,) if left_edge == "curb" else ()).paint(-outer - 1.7, kind="edge")
     for side in (1, -1):
-        street.paint(side * 8.2, kind="edge").paint(side * 4.8, kind="", pattern="dashed")
-    assert lanes_of(street) == {-6.5: 1, -3.1: 1, 3.1: -1, 6.5: -1}
+        street.paint(side * (inner + 1.7), kind="", pattern="dashed")
+    if left_edge == "line":
+        found = lanes_of(street.paint(outer + 1.7, kind="edge"))
+    else:
+        found = lanes_of(street, edges=curbs(street, outer + 1.7))
+    assert sorted(found.items()) == [(pytest.approx(-outer, abs=0.02), 1), (pytest.approx(-inner, abs=0.02), 1),
+                                     (pytest.approx(inner, abs=0.02), -1), (pytest.approx(outer, abs=0.02), -1)]
 
 
 def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():

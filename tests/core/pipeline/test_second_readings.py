@@ -21,9 +21,9 @@ def wrong_lengths(lines, truth):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["beside-middle", "solid-centre-line", "one-sided-island"])
-def test_no_lane_is_wrong_and_sure(made_survey, tmp_path, scene):
-    sample, cloud = made_survey(scene=scene, length=100.0, **PULSES)
+@pytest.mark.parametrize("scene, length", [("beside-middle", 60.0), ("solid-centre-line", 60.0), ("one-sided-island", 100.0)])
+def test_no_lane_is_wrong_and_sure(made_survey, tmp_path, scene, length):
+    sample, cloud = made_survey(scene=scene, length=length, **PULSES)
     found = make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif")
     found.road_points.close()
     assert len(found.driving_lines)

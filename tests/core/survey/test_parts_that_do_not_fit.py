@@ -13,21 +13,25 @@ from scipy.spatial import cKDTree
 
 @pytest.fixture(scope="module")
 def street(made_survey):
+    return surveyed(made_survey, 60.0)
+
+
+def surveyed(made_survey, length):
     """Points of a street surveyed with two scanners, in order of time, and its trajectory."""
-    sample, path = made_survey(length=100.0, pulse_rate=60_000.0, rotation_rate=100.0)
+    sample, path = made_survey(length=length, pulse_rate=60_000.0, rotation_rate=100.0)
     cloud = laspy.read(path)
     cloud.points = cloud.points[np.argsort(cloud.gps_time, kind="stable")]
     return cloud, sample.trajectory
 
 
-def part_of(cloud, folder, name, rows, **changed):
+def part_of(cloud, folder, name, rows, kind="las", **changed):
     """The file of some points, with columns changed; Z in millimetres."""
     part = laspy.LasData(cloud.header)
     part.points = cloud.points[rows].copy()
     for column, change in changed.items():
         part[column] = change(np.asarray(part[column]))
-    part.write(folder / f"{name}.laz")
-    return folder / f"{name}.laz"
+    part.write(folder / f"{name}.{kind}")
+    return folder / f"{name}.{kind}"
 
 
 def told(paths, trajectory):
@@ -38,11 +42,11 @@ def told(paths, trajectory):
     return heard.warned, min((min(along.metres) for along in survey.frame.pass_sigma.values()), default=0.0)
 
 
-def halves(street, tmp_path, **changed):
+def halves(street, tmp_path, kind="las", **changed):
     """Two files of the first and the second half of the drive, columns of the second changed."""
     cloud, _ = street
     late = cloud.gps_time > np.median(cloud.gps_time)
-    return [part_of(cloud, tmp_path, "first", ~late), part_of(cloud, tmp_path, "second", late, **changed)]
+    return [part_of(cloud, tmp_path, "first", ~late, kind), part_of(cloud, tmp_path, "second", late, kind, **changed)]
 
 
 @pytest.mark.parametrize("factor, brighter", [(3.0, "second"), (0.4, "first"), (1.3, None)])
@@ -52,7 +56,7 @@ def test_files_along_one_drive_with_other_scales_of_intensity_are_told(street, t
     assert len(warned) == (brighter is not None)
     for text in warned:
         times, named = re.search(r"about (\S+) times brighter in (\S+) than", text).groups()
-        assert float(times) == pytest.approx(max(factor, 1 / factor), rel=0.2) and f"{brighter}.laz" in named
+        assert float(times) == pytest.approx(max(factor, 1 / factor), rel=0.2) and f"{brighter}.las" in named
 
 
 def test_files_of_scanners_that_measure_together_may_differ_in_brightness(street, tmp_path):
@@ -64,8 +68,9 @@ def test_files_of_scanners_that_measure_together_may_differ_in_brightness(street
 
 
 @pytest.mark.parametrize("up, least", [(0.2, 0.18), (0.0, 0.0)])
-def test_a_street_is_known_no_better_than_the_heights_of_its_files_fit(street, tmp_path, up, least):
-    warned, sigma = told(halves(street, tmp_path, Z=lambda units: units + round(1000 * up)), street[1])
+def test_a_street_is_known_no_better_than_the_heights_of_its_files_fit(made_survey, tmp_path, up, least):
+    street = surveyed(made_survey, 100.0)
+    warned, sigma = told(halves(street, tmp_path, "laz", Z=lambda units: units + round(1000 * up)), street[1])
     assert len(warned) == (up > 0.0) and all("two datums" in text for text in warned)
     assert sigma >= least
 

@@ -72,12 +72,12 @@ def test_without_an_edge_the_two_ends_of_it_are_lines_of_their_own():
 
 def test_an_edge_leads_between_two_places_that_it_passes_and_between_no_others():
     street = ClusteredStreet(radius=None)
-    beside = edges_beside(street.pavement(lambda s: 3.3 + 0.0 * s), [0, 1])
+    beside = edges_beside(street.pavement(lambda s: 3.3 + 0.0 * s), {0: [], 1: []})
     course = beside[0].between((10.0, 4.6), (50.0, 4.6))
     assert course is not None and abs(course(np.array([30.0]))[0] - (3.3 + 1.6)) < 0.02
     assert beside[0].between((10.0, 4.6), (50.0, -3.0)) is None
     assert beside[1].between((10.0, 4.6), (50.0, 4.6)) is None
-    assert edges_beside(None, [0])[0].between((10.0, 4.6), (50.0, 4.6)) is None
+    assert edges_beside(None, {0: []})[0].between((10.0, 4.6), (50.0, 4.6)) is None
 
 
 def test_what_is_known_of_islands_bars_the_way_and_can_be_sent_to_another_process():
@@ -86,6 +86,6 @@ def test_what_is_known_of_islands_bars_the_way_and_can_be_sent_to_another_proces
     for side, offset in (("left", 2.0), ("right", -2.0)):
         places = np.c_[street.place(station, np.full(len(station), offset)), np.full(len(station), 50.0)]
         edges.add(shapely.linestrings(places), road=0, kind="island", edge="curb", status="measured", part="bottom", chain=1, side=side)
-    beside = edges_beside(RoadEdges.from_features(edges, street.frame), [0])[0]
+    beside = edges_beside(RoadEdges.from_features(edges, street.frame), {0: []})[0]
     assert beside.bar(np.array([15.0, 35.0]), np.zeros(2)) and not beside.bar(np.array([15.0, 35.0]), np.full(2, 6.0))
-    assert digest(beside) == digest(edges_beside(RoadEdges.from_features(edges, street.frame), [0])[0])
+    assert digest(beside) == digest(edges_beside(RoadEdges.from_features(edges, street.frame), {0: []})[0])

@@ -148,6 +148,22 @@ def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is()
     assert street.distance(lines.geometries[0], -4.0).max() < 0.02
 
 
+@pytest.mark.parametrize("outlined", [False, True])
+def test_a_double_line_ends_at_a_hatched_island_though_the_edge_lines_run_on_beside_it_and_it_goes_on_behind(outlined):
+    street = ClusteredStreet(radius=None).paint(0, 120, -4.0, kind="edge").paint(0, 120, 4.0, kind="edge")
+    for twin in (-0.12, 0.12):
+        street.paint(0, 46, twin, kind="centre").paint(74, 120, twin, kind="centre")
+    half = lambda s: 1.1 * np.sin(np.pi * (s - 46.0) / 28.0)  # noqa: E731
+    for s in np.arange(48.5, 71.0, 1.5):
+        street.paint(s, s + 0.5, 0.1 - half(s), across=half(s) - 0.1, kind="hatch", use="other")
+        for side in (-1, 1) if outlined else ():
+            street.paint(s, s + 1.4, side * half(s + 0.7), kind="centre")
+    found = list(street.lines())
+    assert {row["status"] for _, row in found} == {"measured"}
+    middle = [(line, row["line"]) for line, row in found if np.abs(shapely.get_coordinates(line)[:, 1] - 5_400_000.0).max() < 0.3]
+    assert sum(line.length for line, _ in middle) == pytest.approx(184, abs=4) and len({number for _, number in middle}) == 2
+
+
 def test_the_stop_line_that_touches_an_edge_line_leaves_the_edge_line_straight():
     street = ClusteredStreet().paint(0, 80, -4.0, kind="hatch", use="other")
     number = len(street.rows)

@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+import shapely
 from counted_calls import calls
 from lanewright.core.markings.lines.linking import CommonTrend, StretchLookup, link_lines, link_over_long_gaps
 from lanewright.core.markings.lines.selection import same_dash_pattern, select_lines
@@ -30,16 +31,12 @@ def strands_of(blocks):
     return sorted(found, key=lambda one: (one.first, one.d[0]))
 
 
-def extents(blocks, *places):
-    return np.array([(at + first, at + last, low, high) for at in BLOCK * np.arange(blocks) for first, last, low, high in places])
-
-
 def found_in(blocks):
-    strands, edges = strands_of(blocks), EdgesBeside([])
+    strands = strands_of(blocks)
+    edges = EdgesBeside([], hatched=[shapely.get_coordinates(shapely.box(at + 60.0, -3.4, at + 78.0, -2.1)) for at in BLOCK * np.arange(blocks)])
     trend = CommonTrend(strands)
     lines = link_over_long_gaps(link_lines([LinkedLine([one]) for one in strands], trend, edges, 13.0), trend, edges, 13.0, 30.0, same_dash_pattern)
-    bars = extents(blocks, *((s, s + 1.0, -3.4, -2.1) for s in np.arange(60.0, 78.0, 2.0)))
-    return select_lines(lines, trend, 4.0, bars)
+    return select_lines(lines, trend, 4.0, edges)
 
 
 def test_two_streets_end_to_end_give_the_lines_of_each():

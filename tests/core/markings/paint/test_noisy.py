@@ -112,8 +112,9 @@ def test_worn_dashes_are_found_where_they_lead_on_a_row_or_are_one_and_two_of_th
 
 
 @pytest.mark.parametrize(("rows", "columns", "is_paint"), [(slice(40, 140), slice(60, 64), True), (slice(60, 64), slice(20, 120), True),
-                                                            (slice(40, 65), slice(60, 64), False), (slice(40, 140), slice(60, 72), False)])
-def test_a_long_thin_piece_is_a_line_though_it_is_faint_and_a_short_or_broad_one_is_none(rows, columns, is_paint):
+                                                            (slice(40, 140), slice(60, 72), True),
+                                                            (slice(40, 65), slice(60, 64), False), (slice(40, 140), slice(60, 80), False)])
+def test_a_long_piece_no_broader_than_a_stop_line_is_paint_though_it_is_faint_and_a_short_or_broader_one_is_none(rows, columns, is_paint):
     mark = np.zeros((180, 140), bool)
     mark[rows, columns] = True
     found = found_in_averages(mark, 2.2)
