@@ -297,8 +297,6 @@ class RETURN:
     full_height: float = 0.75   # quantile of the heights of a road's curbs that is theirs where nothing lowers them
     max_height_step: float = np.log(1.45)   # by which the logarithm of the height of a curb of the same road differs from that of theirs
     # search in plan
-    inner_margin: float = 0.5   # m from a main curb from which the ground inside is certainly road, if it lies within
-    max_inner_height: float = 0.3   # m above or below the expected road
     limit_node_spacing: float = 0.05   # m along the road between the stations at which this is decided
     section_margin: float = 2.0   # m of road on either side of a section that its own steps need
     noisy_raster_share: float = 0.12   # share of the least curb height that heights within a cell scatter, above which they are averaged
