@@ -75,8 +75,9 @@ def _survey_of_run(executor, read, progress):
 
     if executor.work is None:
         return read_here(progress)
-    survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
+    survey = survey_in_file(str(executor.made(states_of(read[0]), read[1:], lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
+    executor.stand_on("what follows", survey.facts(), progress)
     return survey
 
 
@@ -281,8 +282,8 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         missing = [file.path for file in files if not file.has_time]
         which = "The point cloud has" if len(missing) == len(files) else f"{len(missing)} of {len(files)} files, such as {missing[0]}, have"
         return trajectory, f"{which} no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    with ParallelCloudReader(("gps_time",)) as readers:   # a few points of every file that has any, its last ones among them
-        sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
+    clouds = ParallelCloudReader(("gps_time",))   # a few points of every file that has any, its last ones among them
+    sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in clouds.times(file)])) for file in files if file.count]
     times = np.concatenate([time for _, time in sampled])
     if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
