@@ -282,9 +282,11 @@ class _Reach:
 
 
 def _averaged_views(raster, place, along, layer_jump):
-    """Averages of all points, of those seen ahead and of those seen behind the vehicle: a drift of positions in between blurs a curb."""
-    halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
-    return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
+    """Averages of all points, and of those seen far or near, ahead of the vehicle or behind it: a drift of positions in between blurs a curb."""
+    quarter = np.digitize(along, (-RETURN.view_length, 0.0, RETURN.view_length))
+    seen = quarter > 1, quarter < 2, *(quarter == k for k in range(4))
+    parts = (ground_raster(*(v[part] for v in place), layer_jump) for part in seen)
+    return [averaged(view, layer_jump) for view in (raster, *parts) if view is not None]
 
 
 def _track(survey, road, first, last):
