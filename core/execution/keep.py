@@ -133,7 +133,8 @@ class Keep(Executor):
         path, texts = self._path(name), []
         value = read_plain(path, texts.append)
         named = set(POINTS.findall(texts[0]))
-        self._whole.update(file for file in named - self._whole if is_sealed(self.folder / file))
+        # only a folder that outlives the program may have seen the power fail
+        self._whole.update(file for file in named - self._whole if (is_sealed if self.work else Path.exists)(self.folder / file))
         if not named <= self._whole:
             raise OSError("points are gone or damaged")
         for used in (path, *(self.folder / file for file in named)):

@@ -156,7 +156,7 @@ def _returns_of_road(decimation, road, runs, search, seen, settings, usual, look
               and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs[road], line, search.limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, search.limits, settings)
+    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, settings)
     return (yield from with_curbs_beyond(curbs, decimation, road, search.known))
 
 
@@ -197,8 +197,7 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
+    noisy = raster.noise > RETURN.noisy_raster_share * clear
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)
@@ -283,9 +282,11 @@ class _Reach:
 
 
 def _averaged_views(raster, place, along, layer_jump):
-    """Averages of all points, of those seen ahead and of those seen behind the vehicle: a drift of positions in between blurs a curb."""
-    halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
-    return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
+    """Averages of all points, and of those seen far or near, ahead of the vehicle or behind it: a drift of positions in between blurs a curb."""
+    quarter = np.digitize(along, (-RETURN.view_length, 0.0, RETURN.view_length))
+    seen = quarter > 1, quarter < 2, *(quarter == k for k in range(4))
+    parts = (ground_raster(*(v[part] for v in place), layer_jump) for part in seen)
+    return [averaged(view, layer_jump) for view in (raster, *parts) if view is not None]
 
 
 def _track(survey, road, first, last):

@@ -214,14 +214,14 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     span = cv2.dilate(np.where(filled, raster.low, -OUT_OF_RANGE_HEIGHT), window) \
         - cv2.erode(np.where(filled, raster.low, OUT_OF_RANGE_HEIGHT), window)
     level = span <= RETURN.max_level_share * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (RETURN.level_window_cells - 1) * RETURN.plan_cell
-    passable = level & grown(filled, diamond(RETURN.max_bridged_cells))
+    track = np.zeros(filled.shape, bool)
+    track[raster.inside(track_x, track_y)] = True
+    # what lies next to the ground that the vehicle itself hides is connected with the track
+    passable = level & grown(filled, diamond(RETURN.max_bridged_cells)) | ~filled & grown(track, diamond(RETURN.blind_cells))
     barrier = np.zeros(filled.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
     passable &= ~grown(barrier, np.ones((3, 3), np.uint8))
     count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
-    track = np.zeros(filled.shape, bool)
-    track[raster.inside(track_x, track_y)] = True
-    track = grown(track, diamond(int(round(RETURN.driven_half_width / RETURN.plan_cell))))
     track[raster.inside(*inner)] = True
     wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True
