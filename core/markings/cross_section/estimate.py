@@ -39,7 +39,7 @@ from .sequence import (
 from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
-LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
+LENGTH_OF_STRETCH = 500   # derived: stations that are looked at together, 250 m of road: what is chosen from takes 0.2 MB for each interval
 
 
 @dataclass
@@ -115,9 +115,9 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int, int]], l
                            known - part.start, left[:, first:first + max(len(known) - 1, 0)]))
     phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
     chosen = executor.run(phase, pieces, progress)
-    for (*road, _), count in zip(roads, counts):
+    for road, count in zip(roads, counts):
         check_cancelled()
-        yield _estimate_of_road(*road, list(islice(chosen, count)), lane_width, weights)
+        yield _estimate_of_road(*road[:3], list(islice(chosen, count)), lane_width, weights)
 
 
 def _remembered(candidates, evidence, weights):

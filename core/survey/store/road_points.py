@@ -133,7 +133,7 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[
             column[first:end] = store.section(*key)[name]
         return column
 
-    asked = None, []   # rows, which are asked for column by column, and in which sections they lie
+    asked: tuple[Any, list[Any]] = None, []   # rows, which are asked for column by column, and in which sections they lie
 
     def load_rows(name, rows):
         nonlocal asked
