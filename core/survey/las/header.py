@@ -27,7 +27,7 @@ TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 
 
 
 @dataclass(frozen=True)
-class HeaderFields:
+class _HeaderFields:
     """The numbers of a header as they stand there."""
 
     header_size: int
@@ -48,7 +48,7 @@ class HeaderFields:
     maximum: np.ndarray
 
     @classmethod
-    def read(cls, file: BinaryIO) -> HeaderFields | None:
+    def read(cls, file: BinaryIO) -> _HeaderFields | None:
         """Those of an open file; None where it is no LAS file or too short for a header."""
         file.seek(0)
         head = file.read(375)
@@ -237,7 +237,7 @@ COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 10
 class _MendedHeader:
     """A header, None of no LAS file, with what is read in place of some bytes, (first byte, bytes) each, and the ends of sentences about that."""
 
-    fields: HeaderFields | None = None
+    fields: _HeaderFields | None = None
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -283,7 +283,7 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
     """What a LAS or LAZ file says of itself against what is in it; points in compressed chunks are not counted here."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
-        stated = HeaderFields.read(file)
+        stated = _HeaderFields.read(file)
         if stated is None or not stated.header_size <= size:
             return _MendedHeader(stated)
         patches: list[tuple[int, bytes]] = []
@@ -368,7 +368,7 @@ def _are_points(file, fields, first, end, rest):
     return bool(inside.all(axis=1).mean() > 0.5)
 
 
-def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
+def _sampled_places(file: BinaryIO, fields: _HeaderFields, first: int, end: int) -> np.ndarray:
     """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
     rows = np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64))
     return _stored_places(file, (fields.points_at + rows * fields.record_size).tolist())
@@ -512,14 +512,14 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
 
 def _chunks(file):
     """(_Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
-    compression, points_at = _compression(file), HeaderFields.read(file).points_at
+    compression, points_at = _compression(file), _HeaderFields.read(file).points_at
     file.seek(points_at)
     return compression, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(compression.data))
 
 
 def _compression(file):
     """The _Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
-    fields = HeaderFields.read(file)
+    fields = _HeaderFields.read(file)
     records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
     return next((compression for record in records if record.at < fields.points_at and (compression := _Compression.of(record))), None)
 
