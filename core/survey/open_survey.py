@@ -27,7 +27,7 @@ from .las.samples import check_measured_once, coarse_coordinates, distinct_rows,
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .survey import Survey, SurveySettings, survey_in_file
+from .survey import SHIPPED, Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
@@ -77,7 +77,8 @@ def _survey_of_run(executor, read, progress):
         return read_here(progress)
     survey = survey_in_file(str(executor.made(states_of(read[0]), read[1:], lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
-    executor.stand_on("what follows", survey.facts(), progress)
+    facts = {name.replace("_", " "): getattr(survey, name) for name in SHIPPED if name != "counts"}
+    executor.stand_on("what follows", dict(facts, sections=survey.store.section_length), progress)
     return survey
 
 

@@ -91,10 +91,6 @@ class Survey:
         """What other processes need to open the survey, whose points were put in order in a folder; plain values."""
         return dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED})
 
-    def facts(self) -> dict[str, Any]:
-        """{what messages call it: plain value} of what is known of the whole survey, and what all results depend on."""
-        return dict({name.replace("_", " "): getattr(self, name) for name in SHIPPED if name != "counts"}, sections=self.store.kind)
-
     def along(self, span: Callable[[Any], tuple[int, float, float]], known: Any = None, in_memory: bool = False,
               reach: float = 0.0) -> dict[str, Any]:
         """`place` and `state` of a phase whose items read points near a `span` of road: its number, and stations (m).

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
-from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -129,13 +127,11 @@ class ParallelCloudReader:
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
         buffer = self._buffers.of(count * header.point_format.size)("points", np.uint8)
-        left = memoryview(buffer)
-        with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
+        with damage_from(path, header.point_count, first), open(path, "rb") as file:
             file.seek(header.offset_to_point_data + first * header.point_format.size)
-            while len(left) and (size := file.readinto(left)):
-                left = left[size:]
-        if len(left):
-            raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
+            read = file.readinto(buffer)
+        if read < len(buffer):
+            raise truncated_file_error(path, header.point_count, first + read // header.point_format.size)
         return _point_record(buffer, header)
 
 
@@ -195,7 +191,7 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     place = units.in_metres((x, y))
     reader = ParallelCloudReader(("z", "intensity"))
     ranges = [(file, number) for file in files for number in file.numbers(reader, place, radius)]
-    parts = ordered_map(lambda item: item[0].within(item[1], reader, place, radius), ranges, progress)
+    parts = ordered_map(lambda item: item[0].within(item[1], place, radius), ranges, progress)
     points = np.concatenate([np.empty((0, 4)), *parts])
     if not units.metric:
         points[:, :3] = units.in_file(points[:, :3].T).T
@@ -212,8 +208,7 @@ def _state(path):
 
 @lru_cache(maxsize=LAS.remembered_surveys)
 def _opened(states):
-    last = _LastRead()
-    return [_RangesOfFile(header, last) for header in read_headers([path for path, _, _ in states])]
+    return [_RangesOfFile(header) for header in read_headers([path for path, _, _ in states])]
 
 
 @dataclass(frozen=True)
@@ -231,61 +226,39 @@ class _Stored:
         *raw, intensity = (np.concatenate([block.array[name] for block in blocks]) for name in ("X", "Y", "Z", "intensity"))
         return cls(raw, intensity, blocks[0].scales, blocks[0].offsets)
 
-    def __len__(self):
-        return len(self.intensity)
-
     def places(self, rows):
         """(3, M) coordinates of some points, m."""
         return np.stack([numbers[rows] * scale + offset for numbers, scale, offset in zip(self.raw, self.scale, self.offset)])
 
     def within(self, place, radius):
         """(M, 4) x, y, z, m, and intensity of those in a square."""
-        near = np.ones(len(self), bool)
+        near = np.ones(len(self.intensity), bool)
         for numbers, middle, scale, offset in zip(self.raw, place, self.scale, self.offset):
             near &= np.abs(numbers - (middle - offset) / scale) <= radius / abs(scale)
         return np.c_[self.places(near).T, self.intensity[near]]
 
 
-class _LastRead:
-    """The ranges that places lie in that were asked for last, LAS.remembered_points at most: the next place mostly lies in the same ones."""
-
-    def __init__(self):
-        self._points, self._lock = OrderedDict(), threading.Lock()
-
-    def get(self, key):
-        with self._lock:
-            if key in self._points:
-                self._points.move_to_end(key)
-            return self._points.get(key)
-
-    def keep(self, key, points):
-        with self._lock:
-            self._points[key] = points
-            while sum(map(len, self._points.values())) > LAS.remembered_points:
-                self._points.popitem(last=False)
-
-
-@dataclass
+@dataclass(eq=False)
 class _RangesOfFile:
     """The ranges of points of a file, and of those that were read the bounds in which points lie."""
 
     header: CloudHeader
-    last: _LastRead
     ranges: list[tuple[int, int]] = field(default_factory=list)   # (first, count)
     bounds: dict[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)   # {number of a range: (2,) m, the lowest, and the highest}
 
-    def within(self, number, reader, place, radius):
+    def within(self, number, place, radius):
         """(N, 4) x, y, z, m, and intensity of those points of a range that lie in a square; none where no point of the range lies near it."""
         if not self.may_hold(number, place, radius):   # another thread has read it meanwhile
             return np.empty((0, 4))
-        stored = self.last.get((self.header.path, number))
-        if stored is None:
-            stored = _Stored.of(list(reader.points(self.header, *self.ranges[number], LAS.points_per_range)))
-            places = stored.places(slice(None))[:2]
-            self.bounds[number] = places.min(axis=1), places.max(axis=1)
-            if self.may_hold(number, place, radius):
-                self.last.keep((self.header.path, number), stored)
+        stored = (_remembered if self.ranges[number][1] <= 2 * LAS.points_per_range else _RangesOfFile.stored)(self, number)
         return stored.within(place, radius)
+
+    def stored(self, number):
+        """The points of a range, whose bounds are known from then on."""
+        stored = _Stored.of(list(ParallelCloudReader(("z", "intensity")).points(self.header, *self.ranges[number], LAS.points_per_range)))
+        places = stored.places(slice(None))[:2]
+        self.bounds[number] = places.min(axis=1), places.max(axis=1)
+        return stored
 
     def numbers(self, reader, place, radius):
         """Numbers of the ranges in which points of a square may lie."""
@@ -300,3 +273,6 @@ class _RangesOfFile:
         low, high = self.bounds.get(number, (self.header.minimum[:2], self.header.maximum[:2]))
         reach = radius + LAS.bounds_tolerance
         return bool(((low <= place + reach) & (place - reach <= high)).all())
+
+
+_remembered = lru_cache(LAS.remembered_points // LAS.points_per_range)(_RangesOfFile.stored)   # the next place mostly lies where the last one did

@@ -18,7 +18,7 @@ from ...io.crs import METRES, FileUnits, horizontal_part, in_metres, moved_by
 from ...io.weights import IO
 from ...lazy import laspy, pyproj
 from ..weights import LAS
-from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
+from .header import find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
@@ -62,7 +62,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
 
     Raises RoadExtractionError if the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers)
+    reader = _open(path, _mended(path) if known is None else mend(path).with_count(known.count), layers)
     _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
     return reader
 
@@ -97,14 +97,6 @@ def _mended(path):
     if damage := find_damage(path, mended):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
     return with_points_of_chunks(path, mended)
-
-
-def _as_known(path, known):
-    """The same of a file whose points were counted."""
-    mended = mend(path)
-    with opened(path, mended) as file:
-        fields = HeaderFields.read(file)
-    return mended if fields is None else mended.with_count(fields, known.count)
 
 
 def _open(path, mended, layers):

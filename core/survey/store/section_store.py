@@ -114,11 +114,6 @@ class SectionStore:
         self._count = 0
 
     @property
-    def kind(self) -> tuple[Any, ...]:
-        """Plain values that stores of the same sections and columns share."""
-        return self.section_length, self.dtype.descr
-
-    @property
     def count(self) -> int:
         """Points that have a station."""
         return self._count
