@@ -25,7 +25,7 @@ from .candidates import Candidates
 from .sections import STATION_STEP
 from .weights import BARE, UNPAINTED
 
-_known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
+_known: WeakKeyDictionary[Any, tuple[int, Any]] = WeakKeyDictionary()   # stores of road points -> their number, and what `seen_surface` told of them
 
 
 @dataclass
@@ -96,31 +96,20 @@ def _apart(p, road):
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the road surface was scanned, and where it ends; found once for points that are asked for again, as for lines and then for lanes.
+    """Where the road surface was scanned, and where it ends; points that are asked for again, as for lines and then for lanes, are read once.
 
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
     Returns
-        covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres; read-only
-        ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
+        covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres
+        ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown
     """
-    count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
-    coverages, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
-    if key not in coverages:
-        coverages[key] = _surface_coverage(points, road, first, count)
-        for array in coverages[key]:
-            array.flags.writeable = False
-    return coverages[key]
-
-
-def _surface_coverage(points, road, first, count):
-    """The same for stations first to first + count of the grid."""
-    coverages, key = _known[points.store], points.store.count
-    if key not in coverages:
-        coverages[key] = points.seen_surface()
+    first, count, held = int(np.floor(s[0] / STATION_STEP + 0.5)), len(s), points.store.count
+    if _known.get(points.store, (None, None))[0] != held:
+        _known[points.store] = held, points.seen_surface()
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    for begin, *sums in coverages[key].get(road, ()):
+    for begin, *sums in _known[points.store][1].get(road, ()):
         a, b = max(begin, first), min(begin + len(sums[0]), first + count)
         if a < b:
             covered[a - first:b - first] |= sums[0][a - begin:b - begin]

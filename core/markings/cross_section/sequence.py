@@ -524,7 +524,7 @@ def _transition_costs(before, behind, weights):
     (ahead, back, lane, marks, wide), (ahead_behind, back_behind, lane_behind, marks_behind, wide_behind) = map(_compared, (before, behind))
 
     def product(a, b):
-        return np.einsum("ikb,ilb->ikl", a, b, optimize=True)
+        return a @ b.swapaxes(1, 2)   # of whole numbers, which are the same in any order
 
     inner, inner_behind = _core(lane), _core(lane_behind)
     differs = inner.sum(-1)[:, :, None] + inner_behind.sum(-1)[:, None, :] - product(inner, lane_behind) - product(lane, inner_behind)
