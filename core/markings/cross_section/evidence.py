@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from scipy.ndimage import grey_closing, median_filter
 
+from ...common.arrays import mask_runs
 from ...countries.catalogue import NEUTRAL
 from ...road.surface.extract import SurfaceSettings
 from ...survey.frame.placement import located
@@ -253,7 +254,7 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             # bars touch the border only at their ends
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * EVIDENCE.bar_reach / STATION_STEP) + 1, mode="nearest")
-            borders[side] = sign * (outer - OUTSIDE_PAINT - EVIDENCE.half_border)
+            borders[side] = sign * np.where(outer > -FAR, outer - OUTSIDE_PAINT - EVIDENCE.half_border, np.nan)
         for begin, reached in (_reach([lines[j]], frame, road, s) for j in lines_of[k]):
             low, high = max(begin, first), min(begin + reached.shape[1], first + reach.shape[1])
             if low < high:
@@ -269,8 +270,11 @@ def hatched_areas(markings: MarkingObjects, frame: RoadFrame, road: int) -> list
         return []
     s = np.arange(ends.min(), ends.max() + STATION_STEP, STATION_STEP)
     borders = borders_of_hatching(markings, frame, road, s)
-    sides = [np.c_[s, borders[row, :]] for row in range(len(borders))]
-    return [np.concatenate([left, right[::-1]])[np.isfinite(np.r_[left[:, 1], right[::-1, 1]])] for left, right in zip(sides[::2], sides[1::2])]
+    result = []
+    for k in range(0, len(borders), 2):
+        left, right = (np.c_[s[borders.spans.first[k]:borders.spans.end[k]], borders.row(row)] for row in (k, k + 1))
+        result += [np.r_[left[first:end], right[first:end][::-1]] for first, end in mask_runs(np.isfinite(left + right)[:, 1]) if end > first + 1]
+    return result
 
 
 def _meeting(areas, shapes):
