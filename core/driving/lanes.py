@@ -297,15 +297,20 @@ def _filled(values):
 
 
 def _followed(parts_of_lane, parts, first):
-    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first."""
+    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first.
+
+    Where another lane opens on one side, the border on the other side stays.
+    """
     pairs = []
     for k, part in enumerate(parts):
         for j, lane in enumerate(parts_of_lane):
             track = lane[-1]
-            step = abs(part.d[0] - track.d[-1])
-            if track.last == first - 1 and track.direction == part.direction \
-                    and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
-                pairs.append((step, k, j))
+            if track.last != first - 1 or track.direction != part.direction:
+                continue
+            aside, wider = part.d[0] - track.d[-1], (part.width[0] - track.width[-1]) / 2
+            steps = np.abs([aside + wider, aside - wider])
+            if steps.min() < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
+                pairs.append((float(steps.sum()), k, j))
     follows, used = {}, set()
     for _, k, j in sorted(pairs):
         if k not in follows and j not in used:
