@@ -54,11 +54,14 @@ def test_a_lane_is_one_lane_along_the_border_that_it_keeps_where_a_turning_lane_
     def station(s):
         return s if opens else LENGTH - s
 
-    street = Street(length=LENGTH, vehicle=-1.8).paint(-3.6, kind="edge")
-    for line, *ends in ((lambda s: 1.8 * np.clip((station(s) - 60.0) / 40.0, 0.0, 1.0), 5.0, 100.0),
-                         (lambda s: 1.8 + 0.4 * np.clip((station(s) - 100.0) / 15.0, 0.0, 1.0), 100.0, 195.0)):
-        street.paint(line, *sorted(map(station, ends)), kind="edge")
-    lines = list(street.paint(-0.7, *sorted(map(station, (100.0, 195.0))), pattern="dashed").lanes()[0])
+    def share(s, first, length):
+        return np.clip((station(s) - first) / length, 0.0, 1.0)
+
+    street = Street(length=LENGTH, vehicle=-1.8).paint(-3.6, kind="edge").paint(lambda s: 4.0 + 2.2 * share(s, 60.0, 40.0), kind="edge")
+    for line, *ends in ((lambda s: 1.6 * share(s, 60.0, 40.0), 5.0, 100.0), (lambda s: 1.6 + 0.6 * share(s, 100.0, 15.0), 100.0, 195.0)):
+        street.paint(line, *sorted(map(station, ends)), kind="centre", line=50)
+    lines = street.paint(-0.8, *sorted(map(station, (100.0, 195.0))), pattern="dashed").lanes()[0]
+    lines = [(line, row) for line, row in lines if row["direction"] == 1]
     length = {lane: sum(line.length for line, row in lines if row["lane"] == lane) for lane in {row["lane"] for _, row in lines}}
     assert max(length.values()) == pytest.approx(190.0, abs=1.0)
 
