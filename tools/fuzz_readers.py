@@ -50,12 +50,12 @@ def _clouds(folder):
         header = read_header(path)
         for block in read_blocks(path, 1000):
             np.asarray(block.array["X"])
-        with ParallelCloudReader() as readers:  # as a survey is read
-            for part in readers.ranges([header], 100):
-                for points in readers.points(header, *part[1:], 100):
-                    np.asarray(points.array["X"])
-            for times in readers.times(header) if header.has_time and header.count else ():
-                np.asarray(times)
+        readers = ParallelCloudReader()  # as a survey is read
+        for part in readers.ranges([header], 100):
+            for points in readers.points(header, *part[1:], 100):
+                np.asarray(points.array["X"])
+        for times in readers.times(header) if header.has_time and header.count else ():
+            np.asarray(times)
 
     rng = np.random.default_rng(0)
     made = {"las": [], "laz": []}

@@ -6,6 +6,7 @@
 import argparse
 import os
 import random
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -67,18 +68,19 @@ def rows_of(path, table):
     return count
 
 
-def check(kills, folder, seed=1):
-    """What was lost in so many kills while a file, and while a table of a GeoPackage, is written, and as many at other times: sentences."""
+def check(written, otherwise, folder, seed=1):
+    """What was lost in so many kills while a file, and while a table of a GeoPackage, is written, and in so many before: sentences."""
     chance, lost = random.Random(seed), []
     for name, count in TRAJECTORIES.items():
         (folder / f"{name}.csv").write_text("time,x,y,z\n" + "".join(f"{k * 0.1:.1f},{500000 + k},4000000,10\n" for k in range(count)))
     outputs = {folder / "lines.gpkg": ("lines", f"{folder}/lines.gpkg"),
                folder / "map.gpkg": ("lines", f"ogr:dbname='{folder}/map.gpkg' table=\"lines\" (geom)")}
+    before, writes = times(folder, f"{folder}/lines.gpkg")
+    shutil.copy(folder / "lines.gpkg", folder / "map.gpkg")
     if run(folder, "long", f"ogr:dbname='{folder}/map.gpkg' table=\"{OTHERS}\" (geom)").wait():
         raise SystemExit("The table of the user's could not be made.")
     for path, (table, output) in outputs.items():
-        before, writes = times(folder, output)
-        for writing in (True, False):
+        for writing, kills in ((True, written), (False, otherwise)):
             for number in range((kills + 1) // 2):
                 process = run(folder, ("long", "short")[number % 2], output)
                 kill(process, folder, chance.uniform(0.0, writes if writing else before), writing)
@@ -97,6 +99,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=20)
     with tempfile.TemporaryDirectory() as scratch:
-        found = check(parser.parse_args().kills, Path(scratch))
+        kills = parser.parse_args().kills
+        found = check(kills, kills, Path(scratch))
     print("\n".join(found) or "Nothing was lost.")
     sys.exit(bool(found))

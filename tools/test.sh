@@ -32,7 +32,7 @@ run() {
 }
 
 echo "== core, products, simulator and library, where qgis cannot be imported"
-LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/products tests/simulator tests/library "$@"
+LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/library tests/simulator tests/core tests/products "$@"
 if [ "$chosen" -eq 0 ]; then
   echo "== readers fed with broken files"
   "$LANEWRIGHT_BUILD/venv/bin/python" tools/fuzz.py --runs 100

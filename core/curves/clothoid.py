@@ -62,11 +62,6 @@ class Clothoid(Curve):
     def curvature(self, u: np.ndarray | float) -> np.ndarray:
         return self.bend + self.change * np.asarray(u, float)
 
-    def reversed(self) -> Clothoid:
-        (x, y), = self.at(np.array([self.length]))
-        return Clothoid(float(x), float(y), float(self.heading(self.length)) + np.pi,
-                        -float(self.curvature(self.length)), self.change, self.length)
-
     def cut(self, first: float, last: float) -> Clothoid:
         """The part from arc length `first` to `last`."""
         (x, y), = self.at(np.array([first]))

@@ -206,10 +206,10 @@ def _parts(boundaries, estimate, lane_width, line_distance):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
-        if BARE in drawn or bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
+        if bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
             room, rest = np.maximum(part.width - lane_width, 0.0), estimate.weights.left_over_beside
-            # a lane that ends without a line is off by SAME_LANE; those that share a strip share it evenly or are as unlike as lanes of a road are
-            anywhere = np.full_like(room, SAME_LANE**2) if BARE in drawn else (span.count * room) ** 2 / 12
+            # lanes that share a strip share it evenly or are as unlike as lanes of a road are
+            anywhere = (span.count * room) ** 2 / 12
             alone = span.count == 1
             part = _where_driven(part, boundaries.s, estimate, room, [0.0 * anywhere, anywhere] if alone else [
                 anywhere, anywhere + estimate.weights.width_sigma**2], rest[0][2] / rest[1][2] if alone else 1.0)

@@ -58,7 +58,7 @@ def _answered(asked, executor, progress):
         one, k = places[n]
         return (name_of(one.phase.function), one.items[k]) if len(phases) > 1 else one.items[k]
 
-    results = iter(executor.run_together(_joined([*phases.values()]), Items(len(places), item), progress) if places else ())
+    results = iter(executor.run_together(_joined([*phases.values()], executor.folder), Items(len(places), item), progress) if places else ())
     return [[answer for _ in range(len(one.items)) for answer in one.read(next(results))] for one in asked]
 
 
@@ -78,12 +78,12 @@ class _Phases:
                                                             shared=self.shared))
 
 
-def _joined(phases):
-    """The phase that does the items of several."""
+def _joined(phases, folder):
+    """The phase that does the items of several; where a folder lies does not matter."""
     if len(phases) < 2:
         return phases[0]
     by_name = {name_of(phase.function): phase for phase in phases}
-    shared = {name: digest(phase.arguments) for name, phase in by_name.items()}
+    shared = {name: digest(phase.arguments, str(folder or "")) for name, phase in by_name.items()}
     known = all(phase.state is not None or isinstance(phase.source, NoSource) for phase in phases)
 
     def asked(attribute, name, item):

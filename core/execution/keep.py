@@ -1,7 +1,7 @@
 """Results that a later run may want, kept under the hash of what they depend on: in memory, or as files of a folder.
 
 A result depends on a function, plain settings, its item, and what it reads. Resuming, another setting of a late stage and a correction are one case:
-what is not kept is made. Other files, code or versions of packages give other hashes.
+what is not kept is made, and so is a changed tile of a survey with what reads its points. Other code or versions of packages give other hashes.
 """
 
 from __future__ import annotations
@@ -61,7 +61,8 @@ class Keep(Executor):
 
     def __init__(self, executor: Executor, work: Path | None = None):
         self.executor, self.work, self.folder = executor, work, work or executor.folder
-        self._base: tuple[Any, ...] = code_digest(), versions()   # what all hashes depend on
+        self._base: tuple[Any, ...] = code_digest(), versions(), ""   # what all hashes depend on: the last are the facts of the survey
+        self._survey: Any = None   # what tells surveys apart, whatever their points
         self._results: dict[str, Any] = {}   # in memory
         self._whole: set[str] = set()   # files of points that were seen to be whole
         self._first = 0   # how many results there were after the first run
@@ -132,7 +133,8 @@ class Keep(Executor):
         path, texts = self._path(name), []
         value = read_plain(path, texts.append)
         named = set(POINTS.findall(texts[0]))
-        self._whole.update(file for file in named - self._whole if is_sealed(self.folder / file))
+        # only a folder that outlives the program may have seen the power fail
+        self._whole.update(file for file in named - self._whole if (is_sealed if self.work else Path.exists)(self.folder / file))
         if not named <= self._whole:
             raise OSError("points are gone or damaged")
         for used in (path, *(self.folder / file for file in named)):
@@ -140,10 +142,23 @@ class Keep(Executor):
                 os.utime(used)
         return value
 
-    def made(self, of: Any, make: Callable[[Progress], Any], progress: Progress) -> Path:
-        """The file of (a plain value that `make` gives, what was said while it was made), whose phases are kept by the hash of `of` from then on."""
-        name = self._hash(of)
-        path = self._path(name)
+    def stand_on(self, what: str, facts: dict[str, Any], progress: Progress) -> None:
+        """As of `Executor`; where an earlier run of the survey had others, it is said which."""
+        self._base = *self._base[:2], ""
+        path, now = self._path(self._hash((what, self._survey))), {name: digest(value, str(self.work)) for name, value in facts.items()}
+        before = {}
+        with suppress(OSError):
+            before = read_plain(path)
+        if changed := [name for name in now if before.get(name) != now[name]]:
+            write_plain(path, now)
+        if before and changed:
+            progress.info(f"This survey has changed since an earlier run, and with it {', '.join(changed)}. All of {what} is made anew.")
+        self._base = *self._base[:2], digest(now)
+
+    def made(self, files: Any, survey: Any, make: Callable[[Progress], Any], progress: Progress) -> Path:
+        """The file of (a plain value that `make` gives, what was said while it was made), by the states of files and what else they depend on."""
+        self._survey = survey
+        path = self._path(name := self._hash((files, survey)))
         try:
             _, messages = self._read(name)
         except OSError:
@@ -154,7 +169,6 @@ class Keep(Executor):
             for kind, text in messages:
                 (progress.warn if kind == "warn" else progress.info)(text)
             progress.report(1.0)
-        self._base = *self._base, name   # other surveys have other hashes
         self._trim()
         return path
 

@@ -14,9 +14,7 @@ if TYPE_CHECKING:
 
 
 class KeptRun:
-    """The last two results of each stage of a run while it is `wanted`, by a digest of all that they depend on; used by one run at a time.
-
-    With two, what a correction changed is there again at once when it is taken back.
+    """The last two results of each stage of a run while it is `wanted`, by a digest of all that it depends on; used by one run at a time.
 
     phases, free : the Keep of these runs, and what frees the disk space of their points
     """

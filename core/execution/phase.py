@@ -131,6 +131,9 @@ class Executor:
         for results in self.run(phase, lists, progress, [list(keep[k:k + size]) for k in range(0, len(keep), size)]):
             yield from results
 
+    def stand_on(self, what: str, facts: dict[str, Any], progress: Progress) -> None:
+        """Have what is kept from here on depend on facts of the whole survey: {what messages call it: plain value}."""
+
     def disk_error(self, error: OSError) -> RoadExtractionError:
         """One sentence about the folder, which cannot be used."""
         return RoadExtractionError(f"A file cannot be written: {error}.")

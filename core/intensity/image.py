@@ -69,14 +69,9 @@ class _WeightedSums:
             other.weights[window] += self.weights[r0:r1, c0:c1]
 
 
-def _reach_of(settings: ImageSettings) -> int:
-    """Cells that a point reaches beyond its own."""
-    return int(np.ceil(settings.radius_cells))
-
-
 def _extent_of(points: Points, origin: np.ndarray, settings: ImageSettings) -> Extent:
     """The Extent of the cells that points reach; origin : as of `_interpolation_sums`."""
-    reach = _reach_of(settings)
+    reach = int(np.ceil(settings.radius_cells))
     (left, right), (bottom, top) = ([int(np.floor((int(end) * COORDINATE_SCALE + o) / settings.cell_size)) for end in (c.min(), c.max())]
                                     for c, o in ((points.records[name], o) for name, o in zip("xy", origin)))
     return left - reach, right + reach, bottom - reach, top + reach
@@ -135,7 +130,7 @@ def _in_cell(units, origin, cell_size):
 @lru_cache(maxsize=1)
 def _kernels(settings: ImageSettings) -> list[_Kernel]:
     """The kernels of all cells around a point, of the nearest nine, and of those beyond; several threads may use them."""
-    reach = _reach_of(settings)
+    reach = int(np.ceil(settings.radius_cells))
     offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
                if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < settings.radius_cells]
     near = [offset for offset in offsets if max(map(abs, offset)) <= 1]
@@ -317,21 +312,17 @@ def _grid_of(pieces: Sequence[_Piece], settings: ImageSettings) -> tuple[_Grid, 
     (c0, r0), (c1, r1) = extents[:, ::2].min(axis=0).tolist(), (extents[:, 1::2].max(axis=0) + 1).tolist()
     check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
-    return grid, _pieces_by_tile(grid, pieces)
+    pieces_of_tile: dict[Tile, list[_Piece]] = {}
+    for piece in sorted(pieces, key=lambda piece: (piece.road, piece.number)):
+        for tile in grid.tiles_of(piece.extent):
+            pieces_of_tile.setdefault(tile, []).append(piece)
+    # in the order of the road, so that a tile finds most of its pieces still there
+    return grid, sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
 
 
 def _span(length, road, number):
     """A road, and the stations between which a window or a piece lies by its number."""
     return road, number * length, (number + 1) * length
-
-
-def _pieces_by_tile(grid: _Grid, pieces: Sequence[_Piece]) -> list[tuple[Tile, list[_Piece]]]:
-    """Pieces that touch each tile, in the order of the road, so that a tile finds most of its pieces still there."""
-    pieces_of_tile: dict[Tile, list[_Piece]] = {}
-    for piece in sorted(pieces, key=lambda piece: (piece.road, piece.number)):
-        for tile in grid.tiles_of(piece.extent):
-            pieces_of_tile.setdefault(tile, []).append(piece)
-    return sorted(pieces_of_tile.items(), key=lambda item: (item[1][0].road, item[1][0].number, item[0]))
 
 
 def windows_of_image(road_points: RoadPoints, windows: Sequence[tuple[int, int]], settings: ImageSettings) -> list[list[_Piece]]:

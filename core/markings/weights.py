@@ -39,6 +39,11 @@ class _AsphaltWeights:
     most_of_letters: float = 0.65   # of a piece that strokes cover at most: a bright slab has a dark rim, too
     letters_asphalt: float = 1 / 3   # of the darker cells among letters that are no brighter than the asphalt of the road
     patch_tail: float = 3.0   # of its own spreads: how far the brightest cells of a patch lie above its median
+    # limits of the threshold in spreads above the median of asphalt; the lowest where no bin shows paint, and on averages of noisy points
+    lowest: float = 3.0
+    highest: float = 8.0
+    evidence: float = 120.0   # spreads, summed over the cells of a piece: noise of asphalt reaches it once or twice on 1,000 m2
+    close: float = 0.20   # m, gaps along the road that are closed
     min_bin_width: float = 0.75   # m
     max_bin_width: float = 3.0   # m
     min_bin_cells: int = 500   # below which a bin joins its neighbour
@@ -422,6 +427,7 @@ class PHOTOGRAPHS:
     beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
     most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
     sun_squares: float = 8.0   # squares of 20 cm: standard deviation of the mean that tells how bright asphalt in the sun is nearby
+    two_levels: float = 0.72   # of the variance, between shade and sun: of one level that scatters it is two thirds
     paint_step: float = 0.5   # of logarithms of brightness from asphalt to paint, to which that of the survey is drawn
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third

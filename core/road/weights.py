@@ -277,9 +277,10 @@ class RETURN:
     # classes
     min_return_length: float = 1.0   # m of a line
     min_return_steps: int = 3   # of a line: any two are in one
+    least_behind: float = 0.12   # points of raised ground for each one before a curb and on it: at feet of walls there were 0.05 to 0.1,
+    least_behind_apart: float = 0.3   # or up to 0.27, and at curbs 0.46 to 0.9, or 0.18 with a hedge on them
     max_step_spacing: float = 0.6   # m between the steps of a line, on average: scan lines lie apart
     min_road_cosine: float = np.cos(np.radians(45.0))   # of the angle between a line and the road, above which it is the road's own curb
-    main_curb_overlap: float = 0.5   # m along the road that a piece of main curb may lie beside another
     min_parallel_cosine: float = np.cos(np.radians(20.0))   # of the angle between a line and the road, above which it runs along the road
     max_straight_deviation: float = 0.05   # m off its chord within which a curb that left the road is straight
     min_straight_length: float = 2.0   # m of straight curb that make a side street
@@ -296,12 +297,10 @@ class RETURN:
     full_height: float = 0.75   # quantile of the heights of a road's curbs that is theirs where nothing lowers them
     max_height_step: float = np.log(1.45)   # by which the logarithm of the height of a curb of the same road differs from that of theirs
     # search in plan
-    inner_margin: float = 0.5   # m from a main curb from which the ground inside is certainly road, if it lies within
-    max_inner_height: float = 0.3   # m above or below the expected road
     limit_node_spacing: float = 0.05   # m along the road between the stations at which this is decided
     section_margin: float = 2.0   # m of road on either side of a section that its own steps need
     noisy_raster_share: float = 0.12   # share of the least curb height that heights within a cell scatter, above which they are averaged
-    min_averaging_points: int = 6   # points in a cell, on average, that averaging needs
+    view_length: float = 5.0   # m ahead of the vehicle and behind it, that part what is seen near from what is seen far
     main_curb_distance: float = 0.25   # m from a main curb within which a step belongs to it
     led_progress: float = 0.9   # share of the work after which faint curbs are looked for
     max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again
@@ -351,7 +350,7 @@ class RETURN:
     slope_block_cells: int = 5   # cells, side of a block, and
     slope_window_blocks: int = 5   # blocks, side of the window from which the slope of the ground is estimated
     max_ground_slope: float = 0.12   # rise over run of a road
-    driven_half_width: float = 0.75   # m beside a driven track that is certainly road
+    blind_cells: int = 30   # cells from a driven track within which the vehicle itself may hide the ground
     max_bridged_cells: int = 3   # cells without points that count as drivable between others: scan lines lie apart
     # islands among main curbs
     min_side_step: float = 1.0   # m across by which the road's curb lies farther out than an island's
@@ -390,7 +389,6 @@ class RETURN:
     max_height_share: float = 1.5   # to
     min_level_share: float = 0.75   # of the points on either side that are nearer to their own level than to the other
     growth: float = 1.0   # m by which the fitted length grows
-    known_curb_distance: float = 0.25   # m within which a curb is one that is known already
     step_spacing: float = 0.5   # m between the places that are returned
     cell_along: float = 0.5   # m along, and
     cell_across: float = 0.1   # m across, cells in which dense points are averaged: their errors are alike

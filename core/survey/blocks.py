@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
@@ -105,7 +105,7 @@ class _ChosenPoints:
     histogram: HeightHistogram   # histogram, coverage, brightness: of those on the vehicle's own track
     coverage: _Coverage
     brightness: _Brightness
-    file: int = 0   # number of the one that points are taken from
+    file: str = ""   # path of the one that points are taken from
     sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)   # (N,) times and (N, 3) units of 0.1 mm of some; without times none
 
 
@@ -142,7 +142,8 @@ class _BlockReader:
         drops = np.concatenate([np.empty(0, np.int32), *samples])
         under = drops[drops > round(VEHICLE.lowest_sensor / COORDINATE_SCALE)]   # in a tunnel as much lies above
         drops = under if len(under) > READING.least_road_share * len(drops) else drops
-        return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > READING.min_track_points else READING.default_sensor_height
+        # to decimetres, so that it is the same after a change of some points
+        return round(float(np.median(drops)) * COORDINATE_SCALE, 1) if len(drops) > READING.min_track_points else READING.default_sensor_height
 
     def read(self, block: Any, summary: _BlockSummary, ground: _HeightFilter, chosen: _ChosenPoints,
              store: SectionStore) -> Iterator[PartitionedPoints]:
@@ -516,21 +517,21 @@ class _Coverage(_TrackCounts):
 class _Brightness(_TrackCounts):
     """Counts by pass and file, cell and brightness of the road."""
 
-    def add(self, number: int, file: int, s: np.ndarray, intensity: np.ndarray) -> None:
+    def add(self, number: int, file: str, s: np.ndarray, intensity: np.ndarray) -> None:
         """Count points of a pass and a file: (N,) int32 stations, units of 0.1 mm, and intensities."""
         k = (np.log2(np.maximum(intensity, 1)) * READING.brightness_steps).astype(int)
         self._count((number, file), s >> READING.brightness_cell_bits, k, 16 * READING.brightness_steps)
 
-    def warning(self, files: Sequence[CloudHeader]) -> str:
+    def warning(self) -> str:
         """What to tell of files along one drive of which one goes on where the other ends, the same road with another brightness; "" for nothing."""
-        steps: dict[tuple[int, int], list[float]] = {}
+        steps: dict[tuple[str, str], list[float]] = {}
         for pair, octaves in self._seams():
             steps.setdefault(pair, []).extend(octaves)
         usual = {pair: float(np.median(octaves)) for pair, octaves in steps.items() if octaves and np.ptp(octaves) < READING.least_brightness_step}
-        pair, octaves = max(usual.items(), key=lambda step: abs(step[1]), default=((0, 0), 0.0))
+        pair, octaves = max(usual.items(), key=lambda step: abs(step[1]), default=(("", ""), 0.0))
         if abs(octaves) < READING.least_brightness_step:
             return ""
-        dark, bright = (files[number].path for number in pair[::int(np.sign(octaves))])
+        dark, bright = pair[::int(np.sign(octaves))]
         return (f"The road is about {2 ** abs(octaves):.2g} times brighter in {bright} than in {dark}, though one goes on from the other. Paint may "
                 "be missed in either: export both with one scale of intensities.")
 
@@ -586,13 +587,15 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
                 progress: Progress) -> _PointsRead:
     """Read all files into a store as a phase, `block` points at a time, after a look at the first of them."""
     slots = TimeSlots.for_points(sum(file.count for file in files), READING.max_split_samples)
-    blocks, summary, sampled = _BlockReader(frame, choice, slots), _BlockSummary(), []
-    with ParallelCloudReader(choice.layers) as readers:
-        ranges = list(readers.ranges(files, block))
-        drop = blocks.rough_drop((points for number, first, count in ranges for points in readers.points(files[number], first, count, block)),
-                                 progress)
-    chosen, source = blocks.chosen(drop), _PartsOfFiles(files, store, blocks, drop, np.array(ranges, np.int64).reshape(-1, 3), block)
-    phase = Phase(_read_part, source, (), source.place, _join_parts)
+    blocks, summary, sampled, readers = _BlockReader(frame, choice, slots), _BlockSummary(), [], ParallelCloudReader(choice.layers)
+    ranges = list(readers.ranges(files, block))
+    drop = blocks.rough_drop((points for number, first, count in ranges for points in readers.points(files[number], first, count, block)), progress)
+    facts = {"frame": frame, "choice": (choice, block, slots), "sensor height": drop, "sections": store.section_length}
+    executor.stand_on("reading", facts, progress)
+    by_path, rows = [replace(file, path=os.path.abspath(file.path), crs="") for file in files], np.array(ranges, np.int64).reshape(-1, 3)
+    chosen, source = blocks.chosen(drop), _PartsOfFiles({file.path: file for file in by_path}, store, blocks, drop, {
+        file.path: rows[rows[:, 0] == number, 1:] for number, file in enumerate(by_path)}, block)
+    phase = Phase(_read_part, source, (), source.place, _join_parts, state=source.state)
     points = block if store.folder is None else READING.part_points   # threads read block by block
     for part in executor.run(phase, source.items(points), progress):
         summary.join(part.summary)
@@ -602,7 +605,7 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
         sampled.append((part.times, part.places))
         store.adopt(part.index, store.folder)
     return _PointsRead(store, summary, slots, sampled, chosen.histogram.heights(), *chosen.coverage.warnings(),
-                       chosen.brightness.warning(files))
+                       chosen.brightness.warning())
 
 
 # The phase of reading: ranges of points of the files, each decoded, placed and written to the store's folder by whoever is given it.
@@ -624,13 +627,12 @@ class _PartOfFiles:
 class _PartsOfFiles:
     """Files whose points are read part by part into the folder of a store; several threads may do so.
 
-    store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
-    ranges : (B, 3) number of a file, index of the first point and points of every block, which has about `block` points
-    states : of the files, by which a later run knows what was read of them; a file that was written again may have the same header
+    files : by path; store : of which dtype, section length and folder count; drop : m from the trajectory down to the road, about
+    ranges : {path: (B, 2) index of the first point and points of every block, which has about `block` points}
     """
 
-    def __init__(self, files: Sequence[CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: np.ndarray, block: int,
-                 states: Any = None):
+    def __init__(self, files: Mapping[str, CloudHeader], store: SectionStore, reader: _BlockReader, drop: float, ranges: Mapping[str, np.ndarray],
+                 block: int):
         self.files, self.store, self.reader = files, store, reader
         self.ground = _HeightFilter(reader.frame, drop, reader.choice.above_road)
         self.drop, self.ranges, self.block = drop, ranges, block
@@ -639,33 +641,35 @@ class _PartsOfFiles:
     def recipe(self, folder: Path) -> Recipe:
         """How other processes read the same."""
         reader = Recipe("core.survey.blocks:_BlockReader", dict(frame=self.reader.frame, choice=self.reader.choice, slots=self.reader.slots))
-        files = [replace(file, path=os.path.abspath(file.path), crs="") for file in self.files]
         return Recipe("core.survey.blocks:_PartsOfFiles", dict(
-            files=files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block,
-            states=states_of(self.files)))
+            files=self.files, store=self.store.recipe(folder), reader=reader, drop=self.drop, ranges=self.ranges, block=self.block))
 
-    def items(self, points: int) -> list[tuple[int, int]]:
-        """(first, last + 1) numbers of blocks that have about so many points together."""
-        ends = np.cumsum(self.ranges[:, 2])
-        cuts = np.searchsorted(ends, np.arange(points, self.ranges[:, 2].sum(), points)) + 1
-        bounds = np.unique(np.r_[0, cuts, len(ends)]).tolist()
-        return list(zip(bounds[:-1], bounds[1:]))
+    def items(self, points: int) -> list[tuple[str, int, int]]:
+        """Path of a file, and (first, last + 1) numbers of blocks of it that have about so many points together."""
+        items: list[tuple[str, int, int]] = []
+        for path, blocks in self.ranges.items():
+            begins = np.unique(blocks[:, 0] // points, return_index=True)[1].tolist()
+            items += [(path, first, end) for first, end in zip(begins, [*begins[1:], len(blocks)])]
+        return items
 
-    def place(self, item: tuple[int, int]) -> str:
+    def state(self, item: tuple[str, int, int]) -> Any:
+        """By which a later run knows what was read of a file; one that was written again may have the same header."""
+        return states_of([self.files[item[0]]]), self.files[item[0]]
+
+    def place(self, item: tuple[str, int, int]) -> str:
         """What messages call blocks."""
-        number, first, _ = self.ranges[item[0]].tolist()
-        last, begin, count = self.ranges[item[1] - 1].tolist()
-        last_file = "" if last == number else f" of {Path(self.files[last].path).name}"
-        return f"{Path(self.files[number].path).name}, points {first + 1:,} to {begin + count:,}{last_file}"
+        path, first, end = item
+        (first, _), (begin, count) = self.ranges[path][[first, end - 1]].tolist()
+        return f"{Path(path).name}, points {first + 1:,} to {begin + count:,}"
 
 
-def _read_part(source: _PartsOfFiles, item: tuple[int, int]) -> _PartOfFiles:
-    """The phase of reading: the points of some blocks, (first, last + 1) of their numbers, that lie near the road."""
-    chosen, summary = source.reader.chosen(source.drop), _BlockSummary()
+def _read_part(source: _PartsOfFiles, item: tuple[str, int, int]) -> _PartOfFiles:
+    """The phase of reading: the points of some blocks of a file, as of `items`, that lie near the road."""
+    chosen, summary, (path, begin, end) = source.reader.chosen(source.drop), _BlockSummary(), item
+    chosen.file = path
     with source.store.part() as store:
-        for number, first, count in source.ranges[item[0]:item[1]].tolist():
-            chosen.file = number
-            for points in source.clouds.points(source.files[number], first, count, source.block):
+        for first, count in source.ranges[path][begin:end].tolist():
+            for points in source.clouds.points(source.files[path], first, count, source.block):
                 check_cancelled()
                 for part in source.reader.read(points, summary, source.ground, chosen, store):
                     store.add(part)

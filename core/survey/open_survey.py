@@ -27,7 +27,7 @@ from .las.samples import check_measured_once, coarse_coordinates, distinct_rows,
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
-from .survey import Survey, SurveySettings, survey_in_file
+from .survey import SHIPPED, Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
@@ -75,8 +75,10 @@ def _survey_of_run(executor, read, progress):
 
     if executor.work is None:
         return read_here(progress)
-    survey = survey_in_file(str(executor.made((states_of(read[0]), *read[1:]), lambda progress: read_here(progress).contents(), progress)))
+    survey = survey_in_file(str(executor.made(states_of(read[0]), read[1:], lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
+    facts = {name.replace("_", " "): getattr(survey, name) for name in SHIPPED if name != "counts"}
+    executor.stand_on("what follows", dict(facts, sections=survey.store.section_length), progress)
     return survey
 
 
@@ -281,8 +283,8 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         missing = [file.path for file in files if not file.has_time]
         which = "The point cloud has" if len(missing) == len(files) else f"{len(missing)} of {len(files)} files, such as {missing[0]}, have"
         return trajectory, f"{which} no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    with ParallelCloudReader(("gps_time",)) as readers:   # a few points of every file that has any, its last ones among them
-        sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in readers.times(file)])) for file in files if file.count]
+    clouds = ParallelCloudReader(("gps_time",))   # a few points of every file that has any, its last ones among them
+    sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in clouds.times(file)])) for file in files if file.count]
     times = np.concatenate([time for _, time in sampled])
     if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.phase import THREADS, Executor, Phase, Recipe, read_plain, write_plain
+from ..execution.phase import THREADS, Executor, Phase, Recipe, digest, read_plain, write_plain
 from .adjustment.register import PassCorrections
 from .estimation.adjustment import ScannerSplitter
 from .frame.road_frame import RoadFrame
@@ -23,7 +24,7 @@ from .store.array_file import close_files
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, Points, road_of
 from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
-from .weights import FRAME, LAS, READING
+from .weights import FRAME, LAS, READING, STORE
 
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 
@@ -90,11 +91,30 @@ class Survey:
         """What other processes need to open the survey, whose points were put in order in a folder; plain values."""
         return dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED})
 
+    def along(self, span: Callable[[Any], tuple[int, float, float]], known: Any = None, in_memory: bool = False,
+              reach: float = 0.0) -> dict[str, Any]:
+        """`place` and `state` of a phase whose items read points near a `span` of road: its number, and stations (m).
+
+        known : plain values that results depend on beside points and arguments
+        in_memory : whether results are kept there, too, where points do not change
+        reach : m that points are read beyond STORE.read_beyond on either side of a span
+        """
+        beyond, length, of = STORE.read_beyond + reach, self.store.section_length, digest(known)
+
+        def state(item):
+            road, start, end = span(item)
+            return of, self.store.state((road, int(np.floor((start - beyond) / length)), int(np.ceil((end + beyond) / length))))
+
+        of_memory = (lambda item: None) if in_memory else None
+        return dict(place=lambda item: self.stretch(*span(item)), state=of_memory if self.store.folder is None else state)
+
     def put_in_order(self, folder: Path | None, executor: Executor = THREADS, progress: Progress = Progress(), moves: Any = None) -> None:
         """Put the points in order, in a folder that the executor's workers see, as they see that of the store; `moves` : as of _UnorderedPoints."""
         source = _UnorderedPoints(self.store, None if self.store.finish is None else self.finishing, folder, moves)
         length, items = self.store.section_length, self.store.stretches(self.store.numbers())
-        phase = Phase(_order_sections, source, (), lambda item: self.stretch(item[0], item[1] * length, item[2] * length))
+        finished = digest((source.finishing, moves))
+        phase = Phase(_order_sections, source, (), lambda item: self.stretch(item[0], item[1] * length, item[2] * length),
+                      state=lambda item: (finished, source.store.state((item[0], item[1] - source.beyond, item[2] + source.beyond))))
         roads = [None, *(road for road, *_ in items), None]
         items = [(road, first - source.beyond * (before != road), end + source.beyond * (after != road))
                  for (road, first, end), before, after in zip(items, roads, roads[2:])]

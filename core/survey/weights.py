@@ -151,6 +151,7 @@ class STORE:
     """Points by section: how many are mapped and worked on at a time."""
 
     section_length: float = 5.0   # m of station; results do not depend on it
+    read_beyond: float = 40.0   # m of road on either side of a stretch, beyond which its works read no points
     mapped_bytes: int = 64 * 2**20   # bytes of files mapped into a process before it lets go of their pages: neighbouring windows ask for them again
     strips_per_section: int = 16   # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
     section_locks: int = 16   # locks that the sections share while they are read
@@ -168,7 +169,7 @@ class LAS:
     max_decoded: int = 400_000   # points of a last chunk that is decoded to count them: larger ones take too much memory
     flushed_bytes: int = 16   # at most that a coder writes behind its last point: points that need fewer bytes are not all there are
     max_blocks_per_chunk: int = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
-    most_layouts: int = 64   # files whose header and chunks are remembered
+    most_layouts: int = 1024   # files whose header and chunks are remembered
     sampled_places: int = 5   # places in a file at which points are looked at
     points_per_sample: int = 1000   # points looked at in each of these places
     points_per_block: int = 400_000   # points decoded at a time

@@ -27,12 +27,12 @@ def finished_parts(work):
 
 
 def test_a_run_that_is_killed_three_times_makes_nothing_twice_and_gives_what_an_undisturbed_one_gives(street, tmp_path):
-    inputs = dict(POINT_CLOUDS=[street / "s.laz"], TRAJECTORY=street / "drive.gpkg")
+    inputs = dict(POINT_CLOUDS=[street / "s.laz"], TRAJECTORY=street / "drive.gpkg", BOUNDARY_METHOD="profiles")
     run("roadmap", **inputs, WORK_FOLDER=tmp_path / "other", WORKERS=1, ROAD_EDGES=tmp_path / "undisturbed.gpkg",
         MARKING_LINES=tmp_path / "lines.gpkg")
     work, results, parts = tmp_path / "work", (tmp_path / "edges.gpkg", tmp_path / "marking_lines.gpkg"), len(finished_parts(tmp_path / "other"))
     command = [sys.executable, "-W", "ignore", "-c", PROGRAM.format(tests=str(ROOT / "tests")), "roadmap",
-               "--POINT_CLOUDS", str(street / "s.laz"), "--TRAJECTORY", str(street / "drive.gpkg"),
+               "--POINT_CLOUDS", str(street / "s.laz"), "--TRAJECTORY", str(street / "drive.gpkg"), "--BOUNDARY_METHOD", "profiles",
                "--WORK_FOLDER", str(work), "--WORKERS", "1", "--ROAD_EDGES", str(results[0]), "--MARKING_LINES", str(results[1])]
     finished = {}
     for k in range(3):

@@ -47,7 +47,7 @@ def on_map(x, y, north=False, radius=0.0):
     return (EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)
 
 
-def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, density=700.0, noise=0.004, grade=0.03, reach=6.0, seed=11,
+def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, density=450.0, noise=0.004, grade=0.03, reach=6.0, seed=11,
                   above=None, hides=None, north=False, radius=0.0, **road):
     """A Survey of a road, straight or in a bend to the left of a radius in m about its middle.
 

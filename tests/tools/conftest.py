@@ -10,9 +10,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 
 @pytest.fixture(scope="session")
 def short_street(made_once):
-    """A folder with one survey, short/, of 40 m."""
+    """A folder with one survey, short/, of 30 m."""
     from accuracy.surveys import _make_sample
     from lanewright.simulator.survey import SampleSettings
 
     return made_once("short_street", lambda folder: _make_sample(
-        folder / "short", SampleSettings(length=40.0, speed_kmh=60.0, pulse_rate=150_000.0), "a short street"))
+        folder / "short", SampleSettings(length=30.0, speed_kmh=60.0, pulse_rate=120_000.0), "a short street"))

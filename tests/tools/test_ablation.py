@@ -88,7 +88,7 @@ def test_stations_that_begin_earlier_lengthen_the_drive_straight_back():
 
 @pytest.fixture(scope="module")
 def short(short_street, tmp_path_factory):
-    """A survey of 40 m, the rules switched off, and its results as surveyed."""
+    """The short street, the rules switched off, and its results as surveyed."""
     folder = short_street
     chosen = {name: SWITCHES[name] for name in ("common trend", "zigzag lines", "beams made alike", "correction of intensity")}
     into = tmp_path_factory.mktemp("ablation") / "as surveyed.json"

@@ -282,7 +282,6 @@ ROWS = (
         ("long gaps of a dash pattern", "selection:same_dash_pattern", gives(False)),
         ("strays", "linking:without_strays", nth(0), "one centre line at a place"),
         ("between twins", "linking:_between_twins", gives(False), "", "linking:_between_twins linking:twin_offsets"),
-        ("frames of hatching", "selection:_frames_hatching", gives(False), "hatched areas"),
         ("ragged edges and double lines", "selection:_beside", lambda lines, *_: np.zeros((2, len(lines)), bool)),
         ("dashed lines end with a gap", "selection:_extended", lambda drawn, *_: merged_pieces(drawn)),
         ("guides in long gaps", "fit:_guides", gives((np.empty(0), np.empty(0))), "bends, gap of 27 m"),

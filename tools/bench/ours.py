@@ -92,12 +92,6 @@ def storing(size):
         def __init__(self, layers):
             pass
 
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *problem):
-            pass
-
         def ranges(self, files, size):
             return ((number, k, len(block)) for number, file in enumerate(files) for k, block in enumerate(decoded[file.path]))
 

@@ -112,7 +112,7 @@ def _over_areas(d, hatching):
 
 
 def _bare_borders(d):
-    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside the same line."""
+    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside it or on the road."""
     row, station = d.spans.owner, d.spans.station
     order = np.lexsort((-d.values, station))
     order = order[np.isfinite(d.values[order])]
@@ -120,7 +120,7 @@ def _bare_borders(d):
     room = -np.diff(d.values[pairs], axis=0)[0]
     lane = (room >= NEUTRAL.narrowest_lane) & (room <= NEUTRAL.widest_lane)
     count, total = (np.bincount(row[pairs[:, lane]].ravel(), np.tile(values, 2), len(d)) for values in (np.ones(lane.sum()), room[lane]))
-    width = np.where(count > 0, total / np.maximum(count, 1), np.nan)[row]
+    width = np.where(count > 0, total / np.maximum(count, 1), total.sum() / count.sum() if lane.any() else np.nan)[row]
     borders = []
     for beside, sign in zip(pairs, (-1, 1)):
         usual_there = width[beside]

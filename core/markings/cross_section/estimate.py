@@ -36,10 +36,10 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import CENTRE_LINE, DASHED, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
-LENGTH_OF_STRETCH = 1000   # derived: stations that are looked at together, 500 m of road: what is chosen from takes 0.2 MB for each interval
+LENGTH_OF_STRETCH = 500   # derived: stations that are looked at together, 250 m of road: what is chosen from takes 0.2 MB for each interval
 
 
 @dataclass
@@ -49,6 +49,7 @@ class RoadEstimate:
     lined : (N,) int, the intervals of which something is known
     costs : (3, N, K) nats of their cross-sections: all, without names, and of the latter what was seen here: what is laid out alike counts once
     transition, least : as of `ways` of these costs, the most probable ones
+    once : (I, K) nats of the most probable sequence through each as far as it was seen here; inf where nothing is known
     other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
     """
 
@@ -57,6 +58,8 @@ class RoadEstimate:
     sections: Sections
     choice: np.ndarray   # (I,) which of them
     total: float   # nats of them
+    unnamed_total: float   # nats of the best sequence without the names of the lines
+    once_total: float   # and as far as it was seen here
     first_direction: int   # of the lanes met first from the left
     evidence: Evidence   # that it is made from
     weights: EstimateWeights
@@ -64,6 +67,7 @@ class RoadEstimate:
     costs: np.ndarray
     transition: np.ndarray
     least: np.ndarray
+    once: np.ndarray
     other: RoadEstimate | None = None
     behind: float = 0.0
     opposite: RoadEstimate | None = None   # the same as far as it is a second reading, in nats as of `second`
@@ -72,38 +76,18 @@ class RoadEstimate:
     @cached_property
     def probability(self) -> np.ndarray:
         """(2, I, K) how probable each cross-section is, by all that is known, and as far as it was seen here."""
-        return self._everywhere(probabilities(self.costs[::2], self.transition), 0.0)
-
-    @cached_property
-    def once(self) -> np.ndarray:
-        """(I, K) nats of the most probable sequence through each as far as it was seen here; inf where nothing is known."""
-        return self._everywhere(self.least[:, 2].sum(axis=0), np.inf)
+        result = np.zeros((2, *self.sections.cost.shape))
+        result[:, self.lined] = probabilities(self.costs[::2], self.transition)
+        return result
 
     @cached_property
     def second(self) -> np.ndarray:
         """(I, K) by how many nats the most probable sequence through each is behind the best one, without names; inf where nothing is known."""
-        if not len(self.lined):
-            return self._everywhere(self.costs[1], np.inf)
-        best = best_sequence(self.least[0, 1], self.transition)
-        return self._everywhere(behind_best(self.costs[1], self.transition, self.least[:, 1], best, self.candidates.length[self.lined],
-                                            self.weights.repeats), np.inf)
-
-    def _everywhere(self, values, missing):
-        """Values of the intervals of which something is known, as those of all intervals."""
-        result = np.full((*values.shape[:-2], *self.sections.cost.shape), missing)
-        result[..., self.lined, :] = values
+        result = np.full(self.sections.cost.shape, np.inf)
+        if len(self.lined):
+            best, length = best_sequence(self.least[0, 1], self.transition), self.candidates.length[self.lined]
+            result[self.lined] = behind_best(self.costs[1], self.transition, self.least[:, 1], best, length, self.weights.repeats)
         return result
-
-    @property
-    def unnamed_total(self) -> float:
-        """Nats of the best sequence without the names of the lines."""
-        return float(self.least[0, 1, -1].min()) if len(self.lined) else 0.0
-
-    @property
-    def once_total(self) -> float:
-        """Nats of the most probable sequence as far as it was seen here."""
-        finite = self.once[np.isfinite(self.once)]
-        return float(finite.min()) if len(finite) else 0.0
 
 
 def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int, int]], lane_width: float, weights: EstimateWeights, executor: Executor,
@@ -131,9 +115,9 @@ def estimates_of_roads(roads: Sequence[tuple[Candidates, Evidence, int, int]], l
                            known - part.start, left[:, first:first + max(len(known) - 1, 0)]))
     phase = Phase(sections_of_stretch, NoSource(), (lane_width, weights), lambda item: "the lanes of a road")
     chosen = executor.run(phase, pieces, progress)
-    for (*road, _), count in zip(roads, counts):
+    for road, count in zip(roads, counts):
         check_cancelled()
-        yield _estimate_of_road(*road, list(islice(chosen, count)), lane_width, weights)
+        yield _estimate_of_road(*road[:3], list(islice(chosen, count)), lane_width, weights)
 
 
 def _remembered(candidates, evidence, weights):
@@ -173,10 +157,12 @@ def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, 
     # what is laid out alike along the road was seen once
     seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
     costs = np.stack([sections.cost, cost, seen_once])[:, lined]
-    least, choice, total = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), 0.0
+    least, choice, totals = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), [0.0] * 3
+    once = np.full(sections.cost.shape, np.inf)
+    once[lined] = least[:, 2].sum(axis=0)
     if len(lined):
-        choice[lined], total = best_sequence(least[0, 0], transition)
-    return RoadEstimate(candidates, lane_width, sections, choice, total, first_direction, evidence, weights, lined, costs, transition, least)
+        choice[lined], totals = best_sequence(least[0, 0], transition)[0], [*least[0, :2, -1].min(axis=1).tolist(), float(once.min())]
+    return RoadEstimate(candidates, lane_width, sections, choice, *totals, first_direction, evidence, weights, lined, costs, transition, least, once)
 
 
 def _stretches(candidates, begin=0):
@@ -227,6 +213,9 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     narrow, beyond = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end]
     parting = (beyond == FIRST + SECOND - lane) & c.painted[i, m] & c.painted[i, end]
     np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -weights.median_between * parting))
+    # where one border of it has no line, the other one often has none either, on roads that have medians: with lanes beside each other either way
+    median = (beyond == FIRST + SECOND - lane) & (np.minimum(ahead, total - ahead) > 1)[i, k]
+    np.add.at(cost, (i, k), (weights.bare_too - weights.bare[EDGE_LINE]) * median * (c.made_of[i, m] == BARE) * (c.made_of[i, end] == BARE))
     return cost * c.observations(weights)[:, None]
 
 

@@ -23,9 +23,9 @@ from ..road_grid import CELL_SIZE
 from ..weights import EVIDENCE
 from .candidates import Candidates
 from .sections import STATION_STEP
-from .weights import UNPAINTED
+from .weights import BARE, UNPAINTED
 
-_known: WeakKeyDictionary[Any, dict[Any, Any]] = WeakKeyDictionary()   # stores of road points -> what `surface_coverage` found
+_known: WeakKeyDictionary[Any, tuple[int, Any]] = WeakKeyDictionary()   # stores of road points -> their number, and what `seen_surface` told of them
 
 
 @dataclass
@@ -96,31 +96,20 @@ def _apart(p, road):
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the road surface was scanned, and where it ends; found once for points that are asked for again, as for lines and then for lanes.
+    """Where the road surface was scanned, and where it ends; points that are asked for again, as for lines and then for lanes, are read once.
 
     s : (K,) metres, stations of a grid with steps of STATION_STEP
 
     Returns
-        covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres; read-only
-        ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown; read-only
+        covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres
+        ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown
     """
-    count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
-    coverages, key = _known.setdefault(points.store, {}), (road, first, count, points.store.count)
-    if key not in coverages:
-        coverages[key] = _surface_coverage(points, road, first, count)
-        for array in coverages[key]:
-            array.flags.writeable = False
-    return coverages[key]
-
-
-def _surface_coverage(points, road, first, count):
-    """The same for stations first to first + count of the grid."""
-    coverages, key = _known[points.store], points.store.count
-    if key not in coverages:
-        coverages[key] = points.seen_surface()
+    first, count, held = int(np.floor(s[0] / STATION_STEP + 0.5)), len(s), points.store.count
+    if _known.get(points.store, (None, None))[0] != held:
+        _known[points.store] = held, points.seen_surface()
     covered = np.zeros((count, BINS), bool)
     total, number = np.zeros((2, count, 2))
-    for begin, *sums in coverages[key].get(road, ()):
+    for begin, *sums in _known[points.store][1].get(road, ()):
         a, b = max(begin, first), min(begin + len(sums[0]), first + count)
         if a < b:
             covered[a - first:b - first] |= sums[0][a - begin:b - begin]
@@ -190,20 +179,24 @@ def _divided(candidates, offsets, directions, of_road):
 
     Where the surface ends so far away that it is looked at no farther, the road may go on.
     """
-    ends = candidates.valid & UNPAINTED[candidates.made_of] & (np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane)
+    ends = candidates.valid & UNPAINTED[candidates.made_of] & (candidates.made_of != BARE)
+    ends &= np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane
     oncoming = offsets[of_road:][~np.isin(directions[of_road:], directions[:of_road])][..., None]
     with np.errstate(invalid="ignore"):   # NaN where it was not driven
         between = ends & (candidates.left * np.sign(oncoming) > 0) & (np.abs(candidates.left) < np.abs(oncoming))
     return (between & (np.abs(oncoming) > EVIDENCE.own_road)).any(axis=(0, 2)) & (len(set(directions[:of_road].tolist())) == 1)
 
 
-def _of_interval(candidates, s, arrows):
-    """Arrows on the road with the interval in place of the station."""
+def _of_interval(c, s, arrows):
+    """Arrows on the road with the interval in place of the station, as far from the boundaries beside them as they lie where these are on average."""
     if arrows is None:
         return np.empty((0, 3))
     arrows = arrows[(arrows[:, 0] >= s[0]) & (arrows[:, 0] <= s[-1])]
-    interval = np.searchsorted(s[candidates.first], arrows[:, 0], side="right") - 1
-    return np.c_[interval.clip(0), arrows[:, 1:]]
+    intervals = (np.searchsorted(s[c.first], arrows[:, 0], side="right") - 1).clip(0)
+    share = (arrows[:, 0] - s[c.first[intervals]]) / np.maximum(s[c.last[intervals]] - s[c.first[intervals]], STATION_STEP)
+    moved = [np.interp(-d, -c.left[k][c.valid[k]], c.drift[k][c.valid[k]] @ (1 - part, part))
+             for k, d, part in zip(intervals.tolist(), arrows[:, 1].tolist(), share.tolist())]
+    return np.c_[intervals, arrows[:, 1] - np.array(moved), arrows[:, 2]]
 
 
 def _stop_lines(candidates, s, markings, road):

@@ -130,8 +130,8 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     lanes, first_lanes = np.zeros((2, len(KINDS), count, size, size), np.int8)
     between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
     # beside a line bare asphalt is the lane that ends there
-    beside_line = paint[:, :, None] & (c.made_of == BARE)[:, None, :] | paint[:, None, :] & (c.made_of == BARE)[:, :, None]
-    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, np.where(beside_line, *w.unused_asphalt)))
+    beside_bare = any_paint & ((c.made_of == BARE)[:, None, :] | (c.made_of == BARE)[:, :, None])
+    unused = np.where(both_paint, _unused(asphalt, between, LANES.asphalt_of_a_lane[0]), _unused(asphalt, np.where(beside_bare, *w.unused_asphalt)))
     # two lines on both sides are the border of a painted median: each is drawn as between the directions
     double = c.made_of == DOUBLE
     unused = np.where(double[:, :, None] & double[:, None, :], 2 * (w.double[CENTRE_LINE] - w.double[EDGE_LINE]), unused)
@@ -163,14 +163,14 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
         if number == 1:
             fits += w.driven_astride * (loose & (beside_there[..., BEYOND] >= 0))
         # what lies beyond the end of the surface
-        beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * hidden
+        beyond = np.clip(1 - width / np.maximum(number * width_each, 0.1), 0, 1) * (hidden & ~beside_bare)
         total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > LANES.min_scanned_share * number * lane_width)
         # only where somebody drove is a lane known to be wider than lanes are built: elsewhere nothing tells its place in the strip
         built = (width_each >= NEUTRAL.narrowest_lane) & ((width_each <= NEUTRAL.widest_lane) | driven_there | loose)
         if beside_there is aside:
             built &= loose & ~hidden & np.isnan(beside[..., BEYOND]) & (width - width_each > w.driven_sigma)
-        total = np.where(possible & scanned & built, total, np.inf)
+        total = np.where(possible & scanned & built & ((number == 1) | ~beside_bare), total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else TWO_WAY[1 + int(np.sign(number - 2 * split))]
             if beside_there is aside:
@@ -529,7 +529,7 @@ def _transition_costs(before, behind, weights):
     (ahead, back, lane, marks, wide), (ahead_behind, back_behind, lane_behind, marks_behind, wide_behind) = map(_compared, (before, behind))
 
     def product(a, b):
-        return np.einsum("ikb,ilb->ikl", a, b, optimize=True)
+        return a @ b.swapaxes(1, 2)   # of whole numbers, which are the same in any order
 
     inner, inner_behind = _core(lane), _core(lane_behind)
     differs = inner.sum(-1)[:, :, None] + inner_behind.sum(-1)[:, None, :] - product(inner, lane_behind) - product(lane, inner_behind)

@@ -12,7 +12,7 @@ SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND, PAVEMENT,
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
 # whether the road has a border there without paint, and whether nothing is seen of what ends there, by what a boundary is made of
-UNPAINTED, SURFACE_END = (np.isin(np.arange(BARE + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN), (SURFACE, OPEN, BARE)))
+UNPAINTED, SURFACE_END = (np.isin(np.arange(BARE + 1), made) for made in ((CURB, ISLAND, PAVEMENT, SURFACE, OPEN, BARE), (SURFACE, OPEN, BARE)))
 
 
 def _costs(*shares: float) -> tuple[float, ...]:
@@ -41,6 +41,7 @@ class EstimateWeights:
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)   # where nothing is known beyond the outermost line
     # where a lane beside a line ends on bare asphalt, as beside a median, a shoulder or a lane that opens: one such border of ten has no line
     bare: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
+    bare_too: float = 0.7   # of the other border of a strip between lanes, one border of which has no line: half of them have none either
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)   # that are the border of a hatched area
     named: float = 3.0   # of a line that separates something else than its layer says
     stroke: float = 3.0   # m of paint that strokes of symbols have too

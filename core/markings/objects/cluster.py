@@ -423,7 +423,7 @@ def _lasting_cuts(bounds, points):
 
 
 def _at(columns, rows):
-    return tuple(column[rows] for column in columns)
+    return tuple(column.take(rows, axis=0) for column in columns)
 
 
 def _columns_at(records, names, rows):

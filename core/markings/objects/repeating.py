@@ -103,7 +103,7 @@ def _about(spots, rows, heading):
     corners = np.array([low, (low[0], high[1]), high, (high[0], low[1])]) @ turn.T
     in_box = spots.within(corners.min(axis=0) - 1.0, corners.max(axis=0) + 1.0)
     turned = places[in_box] @ turn
-    return in_box[((turned >= low) & (turned <= high)).all(axis=1)]
+    return in_box[np.logical_and(*((turned >= low) & (turned <= high)).T)]
 
 
 def _least_spread(places):

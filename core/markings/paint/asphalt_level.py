@@ -17,7 +17,6 @@ from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..weights import ASPHALT, RIMS
 from .not_paint import RimBands, gutter_cells
-from .settings import MarkingSettings
 
 
 def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims: Sequence[RimBands]) -> tuple[np.ndarray, np.ndarray]:
@@ -52,17 +51,17 @@ def asphalt_profile(bins: list[_AsphaltBin], offsets: np.ndarray) -> tuple[np.nd
 
 
 def threshold_profile(z: np.ndarray, counted: np.ndarray, offsets: np.ndarray, bins: list[_AsphaltBin],
-                      settings: MarkingSettings) -> tuple[np.ndarray, np.ndarray]:
+                      separation: float) -> tuple[np.ndarray, np.ndarray]:
     """Scale and threshold, (columns,) float32 each, at `offsets`: a cell is bright beyond threshold * scale; arguments as in `split_bins`.
 
     The threshold is Otsu's where a bin has paint, else that of the bins beside it, else the lowest.
     """
-    splits = split_bins(z, counted, offsets, bins, settings.separation, settings.highest)
+    splits = split_bins(z, counted, offsets, bins, separation, ASPHALT.highest)
     limits = []
     for split in splits:
         near = [other.threshold for other in splits if other.accepted and abs(other.middle - split.middle) < ASPHALT.max_bin_width]
-        value = split.threshold if split.accepted else np.median(near) if near else settings.lowest
-        limits.append(np.clip(value, settings.lowest, settings.highest))
+        value = split.threshold if split.accepted else np.median(near) if near else ASPHALT.lowest
+        limits.append(np.clip(value, ASPHALT.lowest, ASPHALT.highest))
     middles = [split.middle for split in splits]
     return (np.interp(offsets, middles, [split.spread for split in splits]).astype(np.float32),
             np.interp(offsets, middles, limits).astype(np.float32))

@@ -11,8 +11,7 @@ from ...curves.robust import median
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..road_grid import CELL_SIZE, fill_gaps
-from ..weights import RIMS, TRACKS
-from .settings import MarkingSettings
+from ..weights import ASPHALT, RIMS, TRACKS
 
 
 def track_spacing(occupied: np.ndarray) -> np.ndarray:
@@ -34,23 +33,22 @@ def track_spacing(occupied: np.ndarray) -> np.ndarray:
     return cv2.dilate(gap.astype(np.float32), np.ones((1, 2 * TRACKS.across_reach + 1), np.uint8), borderValue=0) * np.float32(CELL_SIZE)
 
 
-def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, settings: MarkingSettings,
-                 are_paint: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
+def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, are_paint: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
     """(rows, columns) bool, the bright cells of a mask in pieces that are too large and too bright to be noise, and what wear left between two.
 
     A piece is what hangs together once gaps of `close` along the road are closed, and where points lie far apart those that no point was near. The
-    brightness of its cells must sum up to the `evidence` of the settings: a faint line of some length is as sure as a bright speck.
+    brightness of its cells must sum up to enough `evidence`: a faint line of some length is as sure as a bright speck.
 
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
     are_paint : gives (pieces,) bool by (rows, columns) int their numbers from 1 on, 0 elsewhere; None where nothing else tells what is paint
     """
-    joined = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
+    joined = fill_gaps(mask, int(round(ASPHALT.close / CELL_SIZE)), 0)
     for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
         joined |= _unseen_gaps(mask, seen, limit, axis)
     count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
-    sums = np.bincount(labels[mask], np.minimum(z[mask], settings.highest), count)
-    large = sums >= settings.evidence
+    sums = np.bincount(labels[mask], np.minimum(z[mask], ASPHALT.highest), count)
+    large = sums >= ASPHALT.evidence
     if are_paint is not None and large.any():
         large[large] = are_paint((np.cumsum(large) * large)[labels])
     clear = np.zeros(mask.shape, bool)

@@ -14,14 +14,13 @@ from scipy import ndimage
 
 from ...curves.robust import median
 from ...lazy import cv2
-from ..weights import PHOTOGRAPHS, RIMS
+from ..weights import ASPHALT, PHOTOGRAPHS, RIMS
 from .asphalt_level import of_squares, otsu
 from .not_paint import RimBands, beside_pieces, gutter_cells
-from .settings import MarkingSettings
 
 
-def bright_spots(brightness: np.ndarray, rims: Sequence[RimBands],
-                 settings: MarkingSettings) -> tuple[np.ndarray, np.ndarray, Callable[..., np.ndarray], np.ndarray]:
+def bright_spots(brightness: np.ndarray,
+                 rims: Sequence[RimBands]) -> tuple[np.ndarray, np.ndarray, Callable[..., np.ndarray], np.ndarray]:
     """Spreads above the ground around each cell, whether that makes it bright, what tells pieces of paint as in `clear_pieces`, and the brightness
     that points of paint have at least.
 
@@ -34,7 +33,7 @@ def bright_spots(brightness: np.ndarray, rims: Sequence[RimBands],
     z = (brightness - ground) / spread
     # half of the brightest three cells square nearby is where paint ends; worn paint is darker than what is left of it nearby
     brightest = cv2.dilate(cv2.blur(np.nan_to_num(z), (3, 3)), np.ones((PHOTOGRAPHS.half_maximum_cells,) * 2, np.uint8))
-    threshold = np.clip(brightest / 2, settings.lowest, settings.highest)
+    threshold = np.clip(brightest / 2, ASPHALT.lowest, ASPHALT.highest)
     bright = (z > threshold) & ~np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
     light = _light(np.log(np.maximum(brightness, np.float32(1))), np.log(np.maximum(ground, np.float32(1))), bright)
     return z, bright, partial(_are_paint, z, brightness / spread, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
@@ -44,15 +43,17 @@ def _light(brightness, ground, bright):
     """(rows, columns) from -1 for asphalt in the sun to 1 for paint, be it in the sun or in the shade.
 
     Squares of distances from these, in the usual step from asphalt to paint: light adds to logarithms of brightness, on paint and asphalt alike.
-    Where asphalt has two levels, the brighter one is that of the sun, taken from the metres around.
+    Where asphalt has two levels and not one that scatters, the brighter one is that of the sun, taken from the metres around.
 
     brightness, ground : (rows, columns) float32 logarithms; bright : (rows, columns) bool
     """
     known = np.isfinite(brightness)
-    threshold, _, usual, _ = otsu(ground[known])
+    threshold, below, usual, share = otsu(ground[known])
     squares, sunny = (of[::RIMS.coarse_cells, ::RIMS.coarse_cells].astype(np.float32) for of in (ground, known & (ground > threshold)))
     weight, near = (cv2.GaussianBlur(of, (0, 0), PHOTOGRAPHS.sun_squares) for of in (sunny, sunny * (squares - np.float32(usual))))
     sun = np.maximum(cv2.resize(np.float32(usual) + near / np.maximum(weight, np.float32(1e-3)), ground.shape[::-1]), ground)
+    if share * (1.0 - share) * (usual - below) ** 2 < PHOTOGRAPHS.two_levels * ground[known].var():
+        sun = ground
     above_sun = brightness - sun
     sure = above_sun[bright & (above_sun > PHOTOGRAPHS.paint_step / 2)]
     step = (PHOTOGRAPHS.paint_step * PHOTOGRAPHS.usual_cells + sure.sum()) / (PHOTOGRAPHS.usual_cells + len(sure))

@@ -103,7 +103,7 @@ class _Window:
         cells = RoadCells.of(parts, self.first, self.last)
         if cells is None or not parts_within:
             return Columns.concatenate([], self.source.road_points.store.dtype)
-        mask, least = self._from_averages(cells, settings) if noisy else self._from_image(parts, cells, settings, photographed)
+        mask, least = self._from_averages(cells) if noisy else self._from_image(parts, cells, settings, photographed)
         return self._paint_in(parts_within, cells, mask, least)
 
     def _from_image(self, parts, cells, settings, photographed):
@@ -115,10 +115,10 @@ class _Window:
         rims = [RimBands.of(distance, scanned) for distance in (from_rim, edge_distance(cells.half_width, cells.grid.offsets()))]
         with np.errstate(invalid="ignore"):
             if photographed:
-                z, bright, are_paint, least = bright_spots(brightness, rims, settings)
+                z, bright, are_paint, least = bright_spots(brightness, rims)
             else:
                 z, bright, are_paint, least = self._brighter_than_strips(parts, cells.grid.offsets(), brightness, from_rim, rims, settings)
-            mask = clear_pieces(z, bright, scanned, settings, are_paint)
+            mask = clear_pieces(z, bright, scanned, are_paint)
         return mask & ~raised_cells([self._heights(part, cells.grid) for part in parts], mask), least
 
     def _brighter_than_strips(self, parts, offsets, brightness, from_rim, rims, settings):
@@ -138,24 +138,24 @@ class _Window:
         bins = asphalt_bins(brightness[rows], interior, offsets, edges, usual)
         asphalt, spread = asphalt_profile(bins, offsets)
         z, gutter = flatten(brightness, asphalt, spread, rims)
-        scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings)
+        scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings.separation)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
         bright = (z > threshold * scale) & ~gutter
-        return z / scale, bright, partial(two_sided, (brightness - asphalt) / (spread * scale), bright, settings.lowest), least
+        return z / scale, bright, partial(two_sided, (brightness - asphalt) / (spread * scale), bright, ASPHALT.lowest), least
 
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:
         """Flat numbers in the grid of the cells of an even share of the points of a part, and the heights of these."""
         step = max(len(part.cell) // MAX_HEIGHTS, 1)
         return part.numbers_in(grid, part.cell[::step]), self._points(part.grid.first, part.grid.last).records["z"][::step]
 
-    def _from_averages(self, cells, settings):
+    def _from_averages(self, cells):
         """Cells of paint where single points are noisy: bright pieces must have the shape of paint, too."""
         points = self._points(self.first, self.last)
         cell = cell_numbers(points.records, cells.grid)
-        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, settings.lowest)
+        averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape, ASPHALT.lowest)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.source.frame))
-        return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, settings.lowest), None
+        return noisy_paint_cells(averages, rim_distance(cells.occupied), samples, ASPHALT.lowest), None
 
     def _paint_in(self, parts: list[PieceOfRoad], cells: RoadCells, mask: np.ndarray, least: np.ndarray | None) -> Columns:
         """Points of the window's own parts in painted cells, brighter than `least` of their cell; arrays as the grid."""

@@ -35,8 +35,10 @@ class PointDecimation:
     width, spacing : m; a cell is one profile long and about `spacing` wide
     """
 
+    reach = 0.0   # as of `Survey.along`
+
     def __init__(self, survey: Survey, width: float, spacing: float):
-        self.survey, self.width, self.spacing = survey, width, spacing
+        self.survey, self.width, self.spacing, self.known = survey, width, spacing, (width, spacing)
         self._stretch = max(int(round(CURBS.stretch_length / width)), 1)   # profiles
         self._selections: dict = {}   # (road, first profile) -> (number of points, {limit: bits in the file, None for all points})
         self._uneven: dict = {}       # (road, profile) -> bool

@@ -125,8 +125,10 @@ class PseudoScanLines:
     def part(self, first: int, last: int) -> PseudoScanLines:
         """The profiles from `first` to before `last`; the points are shared."""
         a, b, cells = first - self.first, last - self.first, self.shape[1]
-        return replace(self, first=first, starts=self.starts[a * cells:b * cells + 1], low=self.low[a:b], high=self.high[a:b],
-                       noise=self.noise[a:b], spread=self.spread[a:b])
+        starts = self.starts[a * cells:b * cells + 1]
+        of_rows = {name: getattr(self, name)[a:b] for name in ("low", "high", "noise", "spread")}
+        of_points = {name: getattr(self, name)[starts[0]:starts[-1]] for name in ("point", "h", "ground")}
+        return replace(self, first=first, starts=starts - starts[0], **of_rows, **of_points)
 
 
 def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jump: float) -> PseudoScanLines:

@@ -63,9 +63,8 @@ def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], s
     sections.sort(key=lambda section: (section[1], section[2] * searches[section[0]].width))
     parts: dict[tuple[str, int, str], list[CurbSteps]] = {}
     grids: dict[tuple[str, int, str], list[OcclusionGrid]] = {}
-    survey = getattr(source, "survey", None)
-    phase = Phase(function, source, settings, lambda section: _place_of(survey, searches[section[0]].width, *section[1:]), join_sections,
-                  CURBS.sections_together * len(searches))
+    phase = Phase(function, source, settings, join=join_sections, together=CURBS.sections_together * len(searches), **_of_profiles(
+        source, lambda section: (section[1], *(number * searches[section[0]].width for number in section[2:]))))
     for (steps_by_side, beside), (method, road, *_) in zip(source.executor.run(phase, sections, progress), sections):
         for collected, values in ((parts, steps_by_side), (grids, beside)):
             for side, of_side in values.items():
@@ -78,15 +77,16 @@ def steps_of_roads(function: Callable, source: Any, settings: tuple[Any, ...], s
     return result
 
 
-def _place_of(survey, width, road, first, last):
-    """What messages call profiles or planes of a road."""
-    start, end = first * width, last * width
-    return f"road {road}, {start:.0f} to {end:.0f} m" if survey is None else survey.stretch(road, start, end)
+def _of_profiles(source, span):
+    """`Survey.along`; of scanlines of a layer, what messages call planes of a road."""
+    return source.survey.along(span, source.known, reach=source.reach) if hasattr(source, "survey") else dict(
+        place=lambda item: "road {}, {:.0f} to {:.0f} m".format(*span(item)))
 
 
 def phase_along(function: Callable, source: Any, arguments: tuple[Any, ...], width: float, join: Callable) -> Phase:
     """A phase over sections of profiles: (number of a road, first, last + 1); `width` : m from one profile to the next."""
-    return Phase(function, source, arguments, lambda section: _place_of(source.survey, width, *section), join, CURBS.sections_together)
+    return Phase(function, source, arguments, join=join, together=CURBS.sections_together, **_of_profiles(
+        source, lambda section: (section[0], section[1] * width, section[2] * width)))
 
 
 def merged_passes(seen: Sequence[AnySteps]) -> AnySteps:

@@ -49,6 +49,8 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
     length = _length(line_steps.x, line_steps.y)
     if length < RETURN.min_return_length or len(line_steps) < RETURN.min_return_steps or length > RETURN.max_step_spacing * len(line_steps):
         return False
+    if _seen_behind(line_steps) < RETURN.least_behind:
+        return False
     height, noise = np.median(line_steps.height), np.median(scanner_noise[chain.steps])
     sharp = max(np.quantile(line_steps.run, 0.3) - 2 * noise, 0.0)
     limits, slope, rough, scatter = settings.limits, np.arctan2(height, sharp), np.median(line_steps.noise), _chain_scatter(line_steps)
@@ -56,6 +58,11 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
             and not (limits.automatic and length >= CURBS.min_faint_length and limits.faint(height, slope, rough, len(line_steps), scatter)):
         return False
     return is_clean(rough, noise, line_steps.behind, scatter)
+
+
+def _seen_behind(steps):
+    """Points of raised ground for each one before a line of steps and on it: behind the foot of a wall there are hardly any."""
+    return np.median(steps.behind / np.maximum(steps.support, 1))
 
 
 def has_road_before(line_steps: PlanSteps, line: Road, look: RoadLook | None) -> bool:
@@ -104,7 +111,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     for side, chain in zip(_sides_continued(runs, chains, steps), chains):
         line_steps = steps[chain.steps]
         if side:
-            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, limits[side], tips)
+            result += classify_continuation(line_steps, *line.locate(line_steps.x, line_steps.y), side, line, tips)
         else:
             curb = _curb_apart(line_steps, falls[chain.steps], chain.closed, line, limits, passes, linked)
             (result if curb.kind == "side_street" else separate).append(curb)
@@ -135,7 +142,8 @@ def _curb_apart(curb, falls, closed, line, limits, passes, linked):
             and np.median(_road_cosine(curb, s, line)) < RETURN.min_road_cosine and _has_opposite_curb(curb, linked):
         straight = _straight_part(curb)
         return CurbReturn(curb[straight], s[straight], d[straight], side, "side_street")
-    return CurbReturn(curb, s, d, side, "corner" if np.mean(behind) <= RETURN.max_behind_share else "", apart=True)
+    is_corner = np.mean(behind) <= RETURN.max_behind_share and _seen_behind(curb) >= RETURN.least_behind_apart
+    return CurbReturn(curb, s, d, side, "corner" if is_corner else "", apart=True)
 
 
 def _of_the_road(apart, continued, runs, elsewhere, usual):
@@ -179,19 +187,16 @@ def _straight_part(curb):
     return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(curb))
 
 
-def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, limit: SearchLimit,
-                          tips: cKDTree) -> list[CurbReturn]:
+def classify_continuation(curb: PlanSteps, s: np.ndarray, d: np.ndarray, side: str, line: Road, tips: cKDTree) -> list[CurbReturn]:
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it.
 
     curb : N PlanSteps in order, uphill on the right
     s, d : (N,) m, their stations and offsets
     side : of the main curb
-    limit : SearchLimit of that side
     tips : ends of the main curbs
     """
     along = _road_cosine(curb, s, line)
-    if np.median(along) > RETURN.min_road_cosine and not limit.between(np.nanmin(s) + RETURN.main_curb_overlap,
-                                                                       np.nanmax(s) - RETURN.main_curb_overlap):
+    if np.median(along) > RETURN.min_road_cosine:
         return [CurbReturn(curb, s, d, side, "main")]
     near = tips.query(np.c_[curb.x, curb.y][[0, -1]])[0]
     # in order from the main curb outward

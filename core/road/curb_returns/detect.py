@@ -156,7 +156,7 @@ def _returns_of_road(decimation, road, runs, search, seen, settings, usual, look
               and has_road_before(steps[c.steps], line, look)]
     curbs = classify_curbs(chains, steps, falls, runs[road], line, search.limits, decimation.survey.frame.passes_of(road), usual, elsewhere)
     noisy = _noisy_sections(work_sections(decimation.survey, road, settings.profile_width), line, steps, scanner_noise, settings)
-    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, search.limits, settings)
+    curbs = with_led_on(curbs, runs[road], decimation, road, noisy, search.known, settings)
     return (yield from with_curbs_beyond(curbs, decimation, road, search.known))
 
 
@@ -193,20 +193,18 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     margin = int(np.ceil(RETURN.section_margin / width))
     profiles = section[0] - margin, section[1] + margin
     limit = None if points_per_cell is None or decimation.mostly_uneven(road, sum(section) // 2) else points_per_cell
-    x, y, h, along, inner = _beside_vehicle(decimation, road, profiles, limits, limit)
+    x, y, h, along = _beside_vehicle(decimation, road, profiles, limits, limit)
     raster = ground_raster(x, y, h, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= RETURN.min_averaging_points * np.isfinite(raster.low).sum()
-    noisy = dense & (raster.noise > RETURN.noisy_raster_share * clear)
+    noisy = raster.noise > RETURN.noisy_raster_share * clear
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, item, searches, settings, points_per_cell=None)
     line, slopes = survey.frame.road(road), ground_slopes(raster.low)
-    inside = np.concatenate([np.array([x, y])[:, inner], behind], axis=1)
     bounds = barrier.places[barrier.within(*raster.box)].T
     track = _track(survey, road, *(k * width for k in profiles))
-    driven, stepped = driven_ground(raster, slopes, track[0], track[1], inside, bounds[0], bounds[1], clear)
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], behind, bounds[0], bounds[1], clear)
     views = _averaged_views(raster, (x, y, h), along, settings.layer_jump) if noisy else [raster]
     wanted = partial(_is_wanted, line=line, limits=limits, known=known, start=section[0] * width, end=section[1] * width)
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
@@ -245,47 +243,32 @@ def _behind(raster, slopes, steps):
 
 
 def _beside_vehicle(decimation, road, profiles, limits, points_per_cell):
-    """Points of profiles within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
-    and whether each lies between the road's own curbs. The far side of a long island is road, too, but it may not be
-    connected with the track within a section."""
-    survey, reach = decimation.survey, _Reach(limits, *(k * decimation.width for k in profiles))
-    columns = [np.empty((5, 0))]
+    """Points of profiles within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle."""
+    survey, columns = decimation.survey, [np.empty((4, 0))]
+    # how far out either side is searched, tabulated along the road
+    start, end = (k * decimation.width / RETURN.limit_node_spacing for k in profiles)
+    first = int(np.floor(start))
+    nodes = np.arange(first, int(np.ceil(end)) + 2) * RETURN.limit_node_spacing
+    left, right = (sign * np.minimum(limits[side](nodes), FRAME.corridor) for side, sign in SIDE_SIGNS.items())
     for points in decimation.decimated_points(road, profiles, points_per_cell):
         s, d = points.s, points.d
-        inside, inner = reach(s, d)
-        indices = np.flatnonzero(inside)
+        node = np.rint(s * (1.0 / RETURN.limit_node_spacing)).astype(np.intp) - first
+        indices = np.flatnonzero((d >= right.take(node)) & (d <= left.take(node)))
         along = ahead_of_vehicle(survey, points[indices], s.take(indices))
         near = np.flatnonzero(np.abs(along) < CURBS.max_look_along + np.abs(d.take(indices)))
         indices, along = indices.take(near), along.take(near)
         points = points[indices]
         h = points.z - expected_height(survey, road, s.take(indices))
-        columns.append((points.x, points.y, h, along, inner.take(indices) & (np.abs(h) < RETURN.max_inner_height)))
-    *places, inner = (np.concatenate(column) for column in zip(*columns))
-    return *places, inner.astype(bool)
-
-
-class _Reach:
-    """How far out both sides are searched between two stations, tabulated at nodes RETURN.limit_node_spacing apart."""
-
-    def __init__(self, limits, first, last):
-        self.first = int(np.floor(first / RETURN.limit_node_spacing))
-        nodes = np.arange(self.first, int(np.ceil(last / RETURN.limit_node_spacing)) + 2) * RETURN.limit_node_spacing
-        left, right = (np.minimum(limits[side](nodes), FRAME.corridor) for side in SIDE_SIGNS)
-        self.inside = -right, left
-        self.inner = [sign * np.where(limit < FRAME.corridor, np.maximum(limit - RETURN.search_behind_curb - RETURN.inner_margin, 0.0), 0.0)
-                      for sign, limit in ((-1, right), (1, left))]
-
-    def __call__(self, s, d):
-        """(N,) bool, within the limits, and (N,) bool, certainly between the road's own curbs."""
-        k = np.rint(s * (1.0 / RETURN.limit_node_spacing)).astype(np.intp)
-        k -= self.first
-        return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
+        columns.append((points.x, points.y, h, along))
+    return [np.concatenate(column) for column in zip(*columns)]
 
 
 def _averaged_views(raster, place, along, layer_jump):
-    """Averages of all points, of those seen ahead and of those seen behind the vehicle: a drift of positions in between blurs a curb."""
-    halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
-    return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
+    """Averages of all points, and of those seen far or near, ahead of the vehicle or behind it: a drift of positions in between blurs a curb."""
+    quarter = np.digitize(along, (-RETURN.view_length, 0.0, RETURN.view_length))
+    seen = quarter > 1, quarter < 2, *(quarter == k for k in range(4))
+    parts = (ground_raster(*(v[part] for v in place), layer_jump) for part in seen)
+    return [averaged(view, layer_jump) for view in (raster, *parts) if view is not None]
 
 
 def _track(survey, road, first, last):

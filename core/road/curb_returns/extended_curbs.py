@@ -12,7 +12,7 @@ of the errors does not average out. It must do so along both halves of the arc. 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from ..common.sides import ahead_of_vehicle, expected_height
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_continuation
 from .ground_raster import GroundRaster, averaged, ground_raster
-from .main_curbs import KnownPlaces, SearchLimit, tips_of
+from .main_curbs import KnownPlaces, tips_of
 from .steps import PATCH_HALF_WIDTH, PlanSteps, points_about, steps_of_points
 from .tracking import LineEnds, PlanStepChain
 
@@ -195,13 +195,12 @@ LED_KINDS = "main", "corner", "side_street"   # the other curbs have no ends
 
 
 def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: PointDecimation, road: int, sections: Sequence[tuple[int, int]],
-                known: KnownPlaces, limits: Mapping[str, SearchLimit], settings: CurbSettings) -> list[CurbReturn]:
+                known: KnownPlaces, settings: CurbSettings) -> list[CurbReturn]:
     """The curbs away from main curbs, and what continues faintly from them and from main curbs.
 
     runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
     sections : (first, last + 1) profile numbers of those where the scanner is noisy
     known : places of the main curbs
-    limits : side -> SearchLimit
     """
     if not sections:
         return list(curbs)
@@ -228,7 +227,7 @@ def with_led_on(curbs: Sequence[CurbReturn], runs: Sequence[tuple], decimation: 
         line_steps = line_steps[::-1] if at_head else line_steps
         s, d = line.locate(line_steps.x, line_steps.y)
         if k < len(runs):
-            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, limits[runs[k][0]], main_ends)
+            continuations += classify_continuation(line_steps, s, d, runs[k][0], line, main_ends)
         else:
             curb = free[k - len(runs)]
             extended[id(curb)] = _joined(extended[id(curb)], CurbReturn(line_steps, s, d, curb.side, curb.kind), at_head)

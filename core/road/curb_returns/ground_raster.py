@@ -195,13 +195,13 @@ def _median_about(values, size):
 
 
 def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: np.ndarray, track_y: np.ndarray,
-                  inner: Sequence[np.ndarray], barrier_x: np.ndarray, barrier_y: np.ndarray,
+                  behind: np.ndarray, barrier_x: np.ndarray, barrier_y: np.ndarray,
                   min_height: float) -> tuple[np.ndarray, np.ndarray]:
     """Level ground connected with the driven track, and where the ground is stepped.
 
     slopes : result of `ground_slopes`
     track_x, track_y : (N,) local m, places along the driven tracks, less than RETURN.plan_cell apart
-    inner : (x, y), each (K,) local m, places between the road's own curbs
+    behind : (2, K) local m, x and y of places that are road although an island stands between them and the track
     barrier_x, barrier_y : (L,) local m, places along lines that are known to bound the road
     min_height : m, the least step
 
@@ -214,15 +214,15 @@ def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: n
     span = cv2.dilate(np.where(filled, raster.low, -OUT_OF_RANGE_HEIGHT), window) \
         - cv2.erode(np.where(filled, raster.low, OUT_OF_RANGE_HEIGHT), window)
     level = span <= RETURN.max_level_share * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (RETURN.level_window_cells - 1) * RETURN.plan_cell
-    passable = level & grown(filled, diamond(RETURN.max_bridged_cells))
+    track = np.zeros(filled.shape, bool)
+    track[raster.inside(track_x, track_y)] = True
+    # what lies next to the ground that the vehicle itself hides is connected with the track
+    passable = level & grown(filled, diamond(RETURN.max_bridged_cells)) | ~filled & grown(track, diamond(RETURN.blind_cells))
     barrier = np.zeros(filled.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
     passable &= ~grown(barrier, np.ones((3, 3), np.uint8))
     count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
-    track = np.zeros(filled.shape, bool)
-    track[raster.inside(track_x, track_y)] = True
-    track = grown(track, diamond(int(round(RETURN.driven_half_width / RETURN.plan_cell))))
-    track[raster.inside(*inner)] = True
+    track[raster.inside(*behind)] = True
     wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True
     wanted[0] = False

@@ -47,7 +47,7 @@ class SearchLimit:
 
     def __init__(self, points: np.ndarray, sign: int):
         self.sign = sign
-        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
+        self.s, self.u = points[:, 0], sign * points[:, 1]
         cuts = np.flatnonzero(np.diff(self.s) > RETURN.min_opening_length) + 1
         # where runs of curb begin and end, both ascending: which of them is near a place is looked up
         self.begins, self.ends = (np.array([part[k] for part in np.split(self.s, cuts) if len(part)], float) for k in (0, -1))
@@ -81,10 +81,6 @@ class SearchLimit:
             return np.ones(len(s), bool)
         k = np.searchsorted(self.begins - distance, s, side="right") - 1
         return (k < 0) | (s > self.ends[k] + distance)
-
-    def between(self, start: float, end: float) -> bool:
-        """Was a point of main curb measured between two stations?"""
-        return bool(np.searchsorted(self.seen, start, side="right") < np.searchsorted(self.seen, end))
 
 
 def places_along(line: Road, main: Mapping[str, np.ndarray], gap: float) -> np.ndarray:
@@ -123,6 +119,12 @@ class KnownPlaces:
 
     def __init__(self, places: np.ndarray):
         self._trees = [cKDTree(places)]
+
+    def __getstate__(self) -> dict:
+        return dict(places=np.concatenate([tree.data for tree in self._trees]))
+
+    def __setstate__(self, state: dict) -> None:
+        KnownPlaces.__init__(self, **state)
 
     def and_places(self, x: np.ndarray, y: np.ndarray) -> KnownPlaces:
         """These and (N,) further places; what is known of these is not made anew for every few that come."""

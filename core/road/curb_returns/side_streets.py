@@ -64,7 +64,8 @@ def with_curbs_beyond(curbs: Sequence[CurbReturn], decimation: PointDecimation, 
     phase = Phase(_course_beyond, decimation, (), lambda end: "the curbs of side streets")
     courses = yield Asked(phase, [end for end, *_ in open_ends], 1.0)
     line = survey.frame.road(road)
-    return [*curbs, *_distinct([_led(course, *of_end, survey, road, line) for course, of_end in zip(courses, open_ends) if course is not None], met)]
+    led = [_led(course, *of_end, survey, road, line) for course, of_end in zip(courses, open_ends) if course is not None]
+    return [*curbs, *sorted(led, key=lambda curb: -len(curb.steps))]
 
 
 def _course_beyond(decimation: PointDecimation, end: CurbEnd) -> _CurbCourse | None:
@@ -255,18 +256,6 @@ def _led(course, end, curb, at_tail, survey, road, line):
     # in order, uphill on the right
     order = np.arange(count) if at_tail else np.arange(count)[::-1]
     return CurbReturn(steps[order], s[order], d[order], curb.side, "side_street", sigma=course.sigma(t)[order])
-
-
-def _distinct(curbs, met):
-    """Of curbs that were continued, those beside no known one and no other."""
-    chosen: list[CurbReturn] = []
-    for curb in sorted(curbs, key=lambda c: -len(c.steps)):
-        x, y = curb.steps.x, curb.steps.y
-        if np.mean(met.within(x, y, RETURN.known_curb_distance)) > 0.5:
-            continue
-        chosen.append(curb)
-        met = met.and_places(x, y)
-    return chosen
 
 
 # The ground about an arc along which a curb may run: how well two levels with the curb's height between them explain its points.

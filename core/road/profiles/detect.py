@@ -81,9 +81,14 @@ def _steps_by_noise(lines, section, settings, overgrown, thin):
         steps = _with_wider_profiles(steps, lines, section, settings)
     if not noisy.any():
         return steps
-    averaged = find_averaged_steps(lines, CURBS.low_curb_share * limits.clear_height, settings.max_height, settings.layer_jump, overgrown)
-    averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
-    return CurbSteps.join([steps[~noisy[steps.profile - section_lines.first]], averaged[noisy[averaged.profile - section_lines.first]]])
+    rows, around, parts = np.flatnonzero(noisy), section[0] - lines.first, [steps[~noisy[steps.profile - section[0]]]]
+    for run in np.split(rows, np.flatnonzero(np.diff(rows) > 2 * around) + 1):
+        first, last = section[0] + run[[0, -1]] + [0, 1]
+        averaged = find_averaged_steps(lines.part(first - around, last + around), CURBS.low_curb_share * limits.clear_height, settings.max_height,
+                                       settings.layer_jump, overgrown)
+        averaged = averaged[(averaged.profile >= first) & (averaged.profile < last)]
+        parts.append(averaged[noisy[averaged.profile - section[0]]])
+    return CurbSteps.join(parts)
 
 
 def _with_wider_profiles(steps, lines, section, settings):

@@ -40,7 +40,7 @@ from ..weights import CURBS, EDGE, PROFILE, SCANLINE
 from .candidates import ScanlineBoundarySettings, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import LINE_SEPARATION, Scanlines, height_grid
-from .section_planes import ScanlineSettings, scanline_runs
+from .section_planes import ScanlineSettings, margin_of_meshes, scanline_runs
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
@@ -206,6 +206,8 @@ class SurveyScanlines:
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
+        self.known = self.settings, sensor_height, self.lattice, decimation and decimation.known
+        self.reach = max(margin_of_meshes(survey, road.number, self.lattice) for road in survey.frame.roads)
 
     @property
     def executor(self) -> Executor:

@@ -73,7 +73,7 @@ def scanline_runs(survey: Survey, road: int, start: float, end: float, settings:
         lattice = find_lattice(survey, settings.rotation_frequency)
     parts, unmeshed = [], not lattice.mirror_phases
     if lattice.mirror_phases:
-        margin = max(_margin(survey, road, lattice), SCANLINE.min_slice_length, interval)
+        margin = max(margin_of_meshes(survey, road, lattice), SCANLINE.min_slice_length, interval)
         records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
         for key, run in scanner_runs(records):
             mirror = lattice.mirror_phases.get(key)
@@ -101,8 +101,8 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     interval = settings.interval
     sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
 
-    phase = Phase(_scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
-                  Scanlines.join)
+    phase = Phase(_scanlines_of_section, survey, (road, settings, lattice), join=Scanlines.join,
+                  **survey.along(lambda section: (road, *section), reach=margin_of_meshes(survey, road, lattice)))
     yield from survey.executor.run(phase, [(a * interval, b * interval) for a, b in sections], progress)
 
 
@@ -111,8 +111,8 @@ def _scanlines_of_section(survey: Survey, section: tuple[float, float], road: in
     return scanlines_of(survey, road, *section, settings, lattice)
 
 
-def _margin(survey, road, lattice):
-    """m beyond the outer planes within which points are part of their mesh."""
+def margin_of_meshes(survey: Survey, road: int, lattice: ScanLattice) -> float:
+    """m beyond the outer planes of a road within which points are part of their mesh."""
     margin = SCANLINE.max_rib
     for (number, _), mirror in lattice.mirror_phases.items():
         p = survey.frame.passes[number]

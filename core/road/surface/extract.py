@@ -159,8 +159,8 @@ def _take_points(survey, carriageways, road_points, cubes, progress):
     """
     per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
     executor, length = survey.executor, survey.store.section_length
-    phase = Phase(surface_points, road_points, (), lambda item: survey.stretch(item[0][0], item[0][1] * length, item[0][2] * length),
-                  state=lambda item: None)   # what is asked of a survey stays as it is
+    phase = Phase(surface_points, road_points, (), **survey.along(lambda item: (item[0][0], item[0][1] * length, item[0][2] * length),
+                                                                  in_memory=True))
     items = [(stretch, surface_about(carriageways[stretch[0]], stretch, length)) for stretch in survey.store.stretches(list(carriageways))]
     seen: dict[int, list[Any]] = {}
     for (index, first_row, rows, of_scanners, of_sections, seen_there), ((road, *_), _) in zip(executor.run(phase, items, progress), items):

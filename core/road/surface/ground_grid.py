@@ -381,8 +381,8 @@ class MeasuredGround:
         windows = [(road, row, (road, row) not in kept_cells, profiled and (road, row) not in kept_profiles) for road, row, profiled in wanted]
         windows = [window for window in windows if any(window[2:])]
         self._arrays = self._arrays or SharedArrays(self.survey.executor.folder)
-        phase = Phase(ground_of_windows, self.survey, (self._arrays,), lambda item: self.survey.stretch(
-            item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length), listed=SURFACE.measured_windows)
+        phase = Phase(ground_of_windows, self.survey, (self._arrays,), listed=SURFACE.measured_windows, **self.survey.along(
+            lambda item: (item[0][0], item[0][1] * SURFACE.row_length, (item[-1][1] + SURFACE.window_rows) * SURFACE.row_length)))
         for places, (road, row, *measured) in zip((yield Asked(phase, windows, 1.0)), windows):
             for kept, place in zip(compress(self._kept, measured), places):
                 kept[road, row] = place

@@ -129,9 +129,9 @@ class Strips:
         fine, coarse : (N,) m along a row, in whose direction offsets are measured, and across rows
         h : (N,) m above the road
         """
-        row, cell = (coarse / REGISTER.row_cell).astype(np.int64), (fine / REGISTER.lag_cell).astype(np.int64)
+        row, cell = np.trunc(coarse / REGISTER.row_cell), np.trunc(fine / REGISTER.lag_cell)   # NaN beyond a corridor lies in no cell
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
-        flat_index = (row * shape[1] + cell)[inside]
+        flat_index = (row * shape[1] + cell)[inside].astype(np.int64)
 
         def means(values, cells):
             # over neighbouring cells, where points are farther apart than cells

@@ -241,14 +241,12 @@ def read_places(files: Sequence[CloudHeader], scanner_field: str | None = "autom
     files : headers of the clouds
     scanner_field : as of `ScannerCensus.choose`
     """
-    ends, parts = np.cumsum([file.count for file in files]), []
-    with ParallelCloudReader(SAMPLED_LAYERS) as reader:
-        starts = set()
-        for row in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
-            number = int(np.searchsorted(ends, row, side="right"))
-            starts.add((number, reader.chunk_start(files[number], row - int(ends[number] - files[number].count))))
-        for number, start in sorted(starts):
-            parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
+    ends, parts, starts, reader = np.cumsum([file.count for file in files]), [], set(), ParallelCloudReader(SAMPLED_LAYERS)
+    for row in ((np.arange(PLACES_READ) + 0.5) / PLACES_READ * ends[-1]).astype(np.int64).tolist():
+        number = int(np.searchsorted(ends, row, side="right"))
+        starts.add((number, reader.chunk_start(files[number], row - int(ends[number] - files[number].count))))
+    for number, start in sorted(starts):
+        parts += _read_place(reader, files[number], start, -(-PLACES_READ * PLACE_WINDOWS // len(starts)))
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     order = np.argsort(time, kind="stable")
     source = numbers[order, SCANNER_FIELDS.index("point_source_id")]

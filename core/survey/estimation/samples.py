@@ -53,15 +53,14 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
 
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
     """
-    slots = TimeSlots.for_points(sum(file.count for file in files), TRACK.max_samples)
+    slots, readers = TimeSlots.for_points(sum(file.count for file in files), TRACK.max_samples), ParallelCloudReader(SAMPLED_LAYERS)
     origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
 
     def sampled(part):
         number, first, count = part
         return [first_returns(points, slots, origin) for points in readers.points(files[number], first, count, LAS.points_per_block)]
 
-    with ParallelCloudReader(SAMPLED_LAYERS) as readers:
-        parts = [sample for samples in ordered_map(sampled, readers.ranges(files, LAS.points_per_block), progress) for sample in samples]
+    parts = [sample for samples in ordered_map(sampled, readers.ranges(files, LAS.points_per_block), progress) for sample in samples]
     time, place, numbers = (np.concatenate(column) for column in zip(*parts))
     del parts
     if len(time) < TRACK.min_drive_samples:

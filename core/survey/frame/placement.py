@@ -183,4 +183,4 @@ class PlaceIndex:
         numbers = row * np.unique((self._key[slice(*self._rows(row * first - row // 2, row * last + row // 2))] + row // 2) // row)
         rows = np.concatenate([np.empty(0, np.int32), *(self._order[a:b] for a, b in zip(*self._rows(numbers + left, numbers + right)))])
         places = self.places[rows]
-        return np.sort(rows[((places >= low) & (places <= high)).all(axis=1)])
+        return np.sort(rows[np.logical_and(*((places >= low) & (places <= high)).T)])

@@ -78,11 +78,6 @@ class RowTable:
         self.spans, self.values, self.missing = spans, values, missing
 
     @classmethod
-    def full(cls, spans: RowSpans, value: Any, kind: Any = float) -> RowTable:
-        """A table of one value, which stands where nothing is kept too."""
-        return cls(spans, np.full(spans.size, value, kind), value)
-
-    @classmethod
     def of_rows(cls, rows: Sequence[tuple[int, np.ndarray]], stations: int, missing: Any = np.nan) -> RowTable:
         """A table of rows (first station, values)."""
         spans = RowSpans(np.array([first for first, _ in rows], int), np.array([len(values) for _, values in rows], int), stations)

@@ -27,7 +27,7 @@ TYPE_SIZES = 1, 1, 2, 2, 4, 4, 8, 8, 4, 8   # source: bytes (LAS 1.4 R15, table 
 
 
 @dataclass(frozen=True)
-class HeaderFields:
+class _HeaderFields:
     """The numbers of a header as they stand there."""
 
     header_size: int
@@ -48,7 +48,7 @@ class HeaderFields:
     maximum: np.ndarray
 
     @classmethod
-    def read(cls, file: BinaryIO) -> HeaderFields | None:
+    def read(cls, file: BinaryIO) -> _HeaderFields | None:
         """Those of an open file; None where it is no LAS file or too short for a header."""
         file.seek(0)
         head = file.read(375)
@@ -235,21 +235,24 @@ COUNT_AT, LONG_COUNT_AT, RECORD_SIZE_AT, POINTS_AT, EVLR_COUNT_AT = 107, 247, 10
 
 @dataclass(frozen=True)
 class _MendedHeader:
-    """What is read in place of some bytes of a file, (first byte, bytes) each, and the ends of sentences about it."""
+    """A header, None of no LAS file, with what is read in place of some bytes, (first byte, bytes) each, and the ends of sentences about that."""
 
+    fields: _HeaderFields | None = None
     patches: tuple[tuple[int, bytes], ...] = ()
     notes: tuple[str, ...] = ()
 
-    def with_count(self, fields: HeaderFields, count: int) -> _MendedHeader:
+    def with_count(self, count: int) -> _MendedHeader:
         """The same with as many points as there are."""
-        if count == fields.count:
+        fields = self.fields
+        if fields is None or count == fields.count:
             return self
         patches = [(COUNT_AT, struct.pack("<I", count if count < 2**32 else 0))]
         if fields.has_long_count:
             patches.append((LONG_COUNT_AT, struct.pack("<Q", count)))
         note = f"its header states {fields.count:,} points, and {count:,} are there: those were read" + (
             ". If it was copied or downloaded, compare its length with the original's" if count < fields.count else "")
-        return _MendedHeader((*self.patches, *patches), self.notes if count in fields.counts else (*self.notes, note))
+        return _MendedHeader(replace(fields, count=count, counts=(count,)), (*self.patches, *patches),
+                             self.notes if count in fields.counts else (*self.notes, note))
 
 
 class _MendedFile(io.FileIO):
@@ -280,9 +283,9 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
     """What a LAS or LAZ file says of itself against what is in it; points in compressed chunks are not counted here."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
-        stated = HeaderFields.read(file)
+        stated = _HeaderFields.read(file)
         if stated is None or not stated.header_size <= size:
-            return _MendedHeader()
+            return _MendedHeader(stated)
         patches: list[tuple[int, bytes]] = []
         notes: list[str] = []
         records, extended = list(stated.records(file, size)), stated.extended(file, size)
@@ -299,8 +302,8 @@ def mend(path: str | os.PathLike[str]) -> _MendedHeader:
             notes.append(f"its header states {stated.record_size} bytes per point, and there are {fields.record_size}")
         patches += _mended_records(records, fields)
         patches += [(before.at, record.head + record.data) for before in extended if (record := before.mended()) is not before]
-        mended = _MendedHeader(tuple(patches), tuple(notes))
-        return mended if fields.compressed else mended.with_count(fields, _points_in_las(file, fields, size))
+        mended = _MendedHeader(fields, tuple(patches), tuple(notes))
+        return mended if fields.compressed else mended.with_count(_points_in_las(file, fields, size))
 
 
 def _lengths(fields, records, size):
@@ -365,7 +368,7 @@ def _are_points(file, fields, first, end, rest):
     return bool(inside.all(axis=1).mean() > 0.5)
 
 
-def _sampled_places(file: BinaryIO, fields: HeaderFields, first: int, end: int) -> np.ndarray:
+def _sampled_places(file: BinaryIO, fields: _HeaderFields, first: int, end: int) -> np.ndarray:
     """(N, 3) coordinates, as they are stored, of some points of an uncompressed file from `first` to before `end`."""
     rows = np.unique(np.linspace(first, end - 1, min(LAS.points_looked_at, max(end - first, 0))).astype(np.int64))
     return _stored_places(file, (fields.points_at + rows * fields.record_size).tolist())
@@ -395,11 +398,10 @@ LAYERS_OF_ITEM = {10: 9, 11: 1, 12: 2, 13: 1}  # source: LASzip; POINT14, RGB14,
 
 def find_damage(path: str | os.PathLike[str], mended: _MendedHeader | None = None) -> str:
     """What is wrong with the lengths in a file's header, as the end of a sentence; "" where nothing is, or the file is no LAS file."""
-    size = os.path.getsize(path)
-    with opened(path, mend(path) if mended is None else mended) as file:
-        fields = HeaderFields.read(file)
-        if fields is None:
-            return ""
+    size, mended = os.path.getsize(path), mended or mend(path)
+    if (fields := mended.fields) is None:
+        return ""
+    with opened(path, mended) as file:
         if not 227 <= fields.header_size <= fields.points_at <= size:
             return f"its header states that the points begin at byte {fields.points_at:,} of {size:,}"
         if fields.vlrs * VLR_HEADER_SIZE > fields.points_at - fields.header_size:
@@ -431,20 +433,18 @@ def with_points_of_chunks(path: str | os.PathLike[str], mended: _MendedHeader) -
     Chunks of point formats 6 and above, and those of varying size, state their points. Of the others only the last may not be full: it is decoded,
     since points beyond its last need bytes that are not there.
     """
+    if (fields := mended.fields) is None or not fields.compressed:
+        return mended
     with opened(path, mended) as file:
-        fields = HeaderFields.read(file)
-        if fields is None or not fields.compressed:
-            return mended
         compression, begin, table = _chunks(file)
-        return mended.with_count(fields, _points_of(file, compression, begin, table, fields))
+        return mended.with_count(_points_of(file, compression, begin, table, fields))
 
 
 def places_here_and_there(path: str | os.PathLike[str], mended: _MendedHeader) -> np.ndarray:
     """(N, 3) map coordinates of points all over an undamaged file: evenly spread, or the first of each chunk, which is not compressed."""
+    if (fields := mended.fields) is None or not fields.count:
+        return np.empty((0, 3))
     with opened(path, mended) as file:
-        fields = HeaderFields.read(file)
-        if fields is None or not fields.count:
-            return np.empty((0, 3))
         if not fields.compressed:
             places = _sampled_places(file, fields, 0, fields.count)
         else:
@@ -512,14 +512,14 @@ def chunks_of(path: str | os.PathLike[str]) -> tuple[bytes, int, list[tuple[int,
 
 def _chunks(file):
     """(_Compression, first byte, [(points, bytes)] of each chunk) of an open file."""
-    compression, points_at = _compression(file), HeaderFields.read(file).points_at
+    compression, points_at = _compression(file), _HeaderFields.read(file).points_at
     file.seek(points_at)
     return compression, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(compression.data))
 
 
 def _compression(file):
     """The _Compression of the points of an open LAS or LAZ file; None where they are not compressed, or the record of it is missing."""
-    fields = HeaderFields.read(file)
+    fields = _HeaderFields.read(file)
     records = fields.records(file, os.fstat(file.fileno()).st_size) if fields.compressed else ()
     return next((compression for record in records if record.at < fields.points_at and (compression := _Compression.of(record))), None)
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import threading
-from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,23 +15,14 @@ from ...common.progress import Progress
 from ...lazy import laspy, lazrs
 from ..weights import LAS
 from .header import chunks_of
-from .reader import MAX_INTENSITY, CloudHeader, damage_from, layer_selection, open_cloud, read_blocks, read_headers, read_points, truncated_file_error
+from .reader import MAX_INTENSITY, CloudHeader, damage_from, layer_selection, open_cloud, read_blocks, read_headers, states_of, truncated_file_error
 
 
 class ParallelCloudReader:
     """Files read by several threads, each of which reuses one buffer for its points; `layers` as in `open_cloud`."""
 
     def __init__(self, layers: Sequence[str] | None = None):
-        self._layers = layers
-        self._readers: dict[int, tuple[str, Any]] = {}  # thread -> path, laspy.LasReader
-        self._layout, self._buffers = lru_cache(LAS.most_layouts)(self._read_layout), ScratchBuffers()
-
-    def __enter__(self) -> ParallelCloudReader:
-        return self
-
-    def __exit__(self, *problem: object) -> None:
-        for _, reader in self._readers.values():
-            reader.close()
+        self._layers, self._buffers = layers, ScratchBuffers()
 
     def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
         """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
@@ -45,7 +34,7 @@ class ParallelCloudReader:
                 continue
             if _in_one_piece(file, size):
                 yield number, 0, file.count
-            elif self._layout(file)[0].are_points_compressed:
+            elif _layout(file).header.are_points_compressed:
                 yield from ((number, *run) for run in self._chunk_runs(file, size))
             else:
                 yield from ((number, first, min(size, file.count - first)) for first in range(0, file.count, size))
@@ -60,33 +49,25 @@ class ParallelCloudReader:
 
     def _load(self, file, first, count):
         """The points of a range of whole chunks, or of any points of a LAS file."""
-        header, chunks = self._layout(file)
+        header, record, ends, places = _layout(file)
         if not header.are_points_compressed:
             return self._read_uncompressed(file.path, header, first, count)
-        record, start, table = chunks
-        points, length = table.T
-        ends = np.cumsum(points)
-        k, end = np.searchsorted(ends, (first, first + count - 1), side="right")
-        run = table[k:end + 1].copy()
-        run[-1, 0] -= ends[end] - first - count   # for the last chunk the table may state the capacity
-        run = [(count, nbytes) for count, nbytes in run.tolist() if count]
-        return self._read_chunks(file.path, header, record, start + int(length[:k].sum()), first, run)
-
-    def _read_layout(self, file):
-        """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
-        with open_cloud(file.path, self._layers, known=file) as reader:
-            header = reader.header
-        if not header.are_points_compressed:
-            return header, None
-        record, start, table = chunks_of(file.path)
-        return header, (record, start, np.array(table, np.int64).reshape(-1, 2))
+        buffer = self._buffers.of(count * header.point_format.size)("points", np.uint8)
+        k, end = np.searchsorted(ends, (first, first + count))
+        table = [(points, nbytes) for points, nbytes in np.diff([ends[k:end + 1], places[k:end + 1]]).T.tolist() if points]
+        with damage_from(file.path, header.point_count, first):
+            with open(file.path, "rb") as stream:
+                stream.seek(places[k])
+                compressed = stream.read(places[end] - places[k])
+            lazrs.decompress_points_with_chunk_table(compressed, record, buffer, table, layer_selection(self._layers).to_lazrs())
+        return _point_record(buffer, header)
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
         if file.chunk:
             starts = np.linspace(0, max(file.count - LAS.points_per_sample, 0), LAS.sampled_places).astype(int)
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
-            samples = (self._read_points(file, start, LAS.points_per_sample) for start in np.unique(starts).tolist())
+            samples = self._few(file, np.unique(starts).tolist(), LAS.points_per_sample)
         else:
             runs = list(self._chunk_runs(file, 1))
             samples = (self._load(file, *runs[k]) for k in np.unique(np.linspace(0, len(runs) - 1, LAS.sampled_places).astype(int)))
@@ -97,9 +78,8 @@ class ParallelCloudReader:
         """Index of the first point of the chunk that holds the point `at`."""
         if file.chunk:
             return at - at % file.chunk
-        ends = np.cumsum(self._layout(file)[1][2][:, 0])
-        k = int(np.searchsorted(ends, at, side="right"))
-        return int(ends[k - 1]) if k else 0
+        ends = _layout(file).ends
+        return int(ends[np.searchsorted(ends, at, side="right") - 1])
 
     def following(self, file: CloudHeader, start: int, count: int) -> Iterator[Any]:
         """Yield laspy point records of `count` points, or of chunks where their size varies, from the first point of a chunk on.
@@ -107,8 +87,7 @@ class ParallelCloudReader:
         A chunk is decoded no further than its points are asked for; the next record may overwrite one.
         """
         if file.chunk:
-            for first in range(start, file.count, count):
-                yield self._read_points(file, first, count)
+            yield from self._few(file, range(start, file.count, count), count)
             return
         for run in self._chunk_runs(file, 1):
             if run[0] >= start:
@@ -117,8 +96,7 @@ class ParallelCloudReader:
     def _chunk_runs(self, file, size):
         """Yield (index of the first point, points) of runs of as many chunks as `size` points hold, at least one."""
         first = before = 0
-        # for the last chunk the table may state the capacity
-        for end in np.minimum(np.cumsum(self._layout(file)[1][2][:, 0]), file.count).tolist():
+        for end in _layout(file).ends.tolist():
             if before > first and end - first > size:
                 yield first, before - first
                 first = before
@@ -128,40 +106,57 @@ class ParallelCloudReader:
         if before < file.count:
             raise truncated_file_error(file.path, file.count, before)
 
-    def _read_points(self, file, first, count):
-        return read_points(self._reader(file), file.path, first, count)
-
-    def _read_chunks(self, path, header, record, place, first, table):
-        """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
-        buffer = self._buffers.of(sum(count for count, _ in table) * header.point_format.size)("points", np.uint8)
-        with damage_from(path, header.point_count, first):
-            with open(path, "rb") as file:
-                file.seek(place)
-                compressed = file.read(sum(length for _, length in table))
-            lazrs.decompress_points_with_chunk_table(compressed, record, buffer, table, layer_selection(self._layers).to_lazrs())
-        return _point_record(buffer, header)
+    def _few(self, file, starts, count):
+        """Yield the first of so many points of chunks that begin at an index, or those that follow the ones before."""
+        header, record, *_ = _layout(file)
+        if not header.are_points_compressed:
+            yield from (self._read_uncompressed(file.path, header, first, min(count, file.count - first)) for first in starts)
+            return
+        with open(file.path, "rb") as stream:
+            stream.seek(header.offset_to_point_data)
+            decoder, at = lazrs.LasZipDecompressor(stream, record, layer_selection(self._layers).to_lazrs()), None
+            for first in starts:
+                buffer = np.empty(min(count, file.count - first) * header.point_format.size, np.uint8)
+                with damage_from(file.path, header.point_count, first):
+                    if first != at:
+                        decoder.seek(first)
+                    decoder.decompress_many(buffer)
+                at = first + count
+                yield _point_record(buffer, header)
 
     def _read_uncompressed(self, path, header, first, count):
         """`count` points of a LAS file from index `first` on."""
         buffer = self._buffers.of(count * header.point_format.size)("points", np.uint8)
-        left = memoryview(buffer)
-        with damage_from(path, header.point_count, first), open(path, "rb", buffering=0) as file:
+        with damage_from(path, header.point_count, first), open(path, "rb") as file:
             file.seek(header.offset_to_point_data + first * header.point_format.size)
-            while len(left) and (size := file.readinto(left)):
-                left = left[size:]
-        if len(left):
-            raise truncated_file_error(path, header.point_count, first + (len(buffer) - len(left)) // header.point_format.size)
+            read = file.readinto(buffer)
+        if read < len(buffer):
+            raise truncated_file_error(path, header.point_count, first + read // header.point_format.size)
         return _point_record(buffer, header)
 
-    def _reader(self, file):
-        path, thread = file.path, threading.get_ident()
-        opened, reader = self._readers.get(thread, ("", None))
-        if opened != path:
-            if reader is not None:
-                reader.close()
-            reader = open_cloud(path, self._layers, known=file, sparse=True)
-            self._readers[thread] = path, reader
-        return reader
+
+class _Layout(NamedTuple):
+    """laspy's header of a file and, of C chunks, its LASzip record, and (C + 1,) points before the bounds of chunks and bytes there."""
+
+    header: Any
+    record: bytes = b""
+    ends: np.ndarray = np.zeros(1, np.int64)
+    places: np.ndarray = np.zeros(1, np.int64)
+
+
+def _layout(file):
+    return _read_layout(file, states_of([file])[0])
+
+
+@lru_cache(LAS.most_layouts)
+def _read_layout(file, state):
+    with open_cloud(file.path, known=file) as reader:
+        header = reader.header
+    if not header.are_points_compressed:
+        return _Layout(header)
+    record, start, table = chunks_of(file.path)
+    ends, places = np.cumsum([(0, start), *table], axis=0).T
+    return _Layout(header, record, np.minimum(ends, file.count), places)   # for the last chunk the table may state the capacity
 
 
 def _point_record(buffer, header):
@@ -194,10 +189,10 @@ def points_near(paths: Iterable[str | os.PathLike[str]], x: float, y: float, rad
     files = _opened(tuple(map(_state, paths)))
     units = files[0].header.units   # of the map, in which the results of these clouds are
     place = units.in_metres((x, y))
-    with ParallelCloudReader(("z", "intensity")) as reader:
-        ranges = [(file, number) for file in files for number in file.numbers(reader, place, radius)]
-        parts = ordered_map(lambda item: item[0].within(item[1], reader, place, radius), ranges, progress)
-        points = np.concatenate([np.empty((0, 4)), *parts])
+    reader = ParallelCloudReader(("z", "intensity"))
+    ranges = [(file, number) for file in files for number in file.numbers(reader, place, radius)]
+    parts = ordered_map(lambda item: item[0].within(item[1], place, radius), ranges, progress)
+    points = np.concatenate([np.empty((0, 4)), *parts])
     if not units.metric:
         points[:, :3] = units.in_file(points[:, :3].T).T
     return points
@@ -213,8 +208,7 @@ def _state(path):
 
 @lru_cache(maxsize=LAS.remembered_surveys)
 def _opened(states):
-    last = _LastRead()
-    return [_RangesOfFile(header, last) for header in read_headers([path for path, _, _ in states])]
+    return [_RangesOfFile(header) for header in read_headers([path for path, _, _ in states])]
 
 
 @dataclass(frozen=True)
@@ -232,61 +226,39 @@ class _Stored:
         *raw, intensity = (np.concatenate([block.array[name] for block in blocks]) for name in ("X", "Y", "Z", "intensity"))
         return cls(raw, intensity, blocks[0].scales, blocks[0].offsets)
 
-    def __len__(self):
-        return len(self.intensity)
-
     def places(self, rows):
         """(3, M) coordinates of some points, m."""
         return np.stack([numbers[rows] * scale + offset for numbers, scale, offset in zip(self.raw, self.scale, self.offset)])
 
     def within(self, place, radius):
         """(M, 4) x, y, z, m, and intensity of those in a square."""
-        near = np.ones(len(self), bool)
+        near = np.ones(len(self.intensity), bool)
         for numbers, middle, scale, offset in zip(self.raw, place, self.scale, self.offset):
             near &= np.abs(numbers - (middle - offset) / scale) <= radius / abs(scale)
         return np.c_[self.places(near).T, self.intensity[near]]
 
 
-class _LastRead:
-    """The ranges that places lie in that were asked for last, LAS.remembered_points at most: the next place mostly lies in the same ones."""
-
-    def __init__(self):
-        self._points, self._lock = OrderedDict(), threading.Lock()
-
-    def get(self, key):
-        with self._lock:
-            if key in self._points:
-                self._points.move_to_end(key)
-            return self._points.get(key)
-
-    def keep(self, key, points):
-        with self._lock:
-            self._points[key] = points
-            while sum(map(len, self._points.values())) > LAS.remembered_points:
-                self._points.popitem(last=False)
-
-
-@dataclass
+@dataclass(eq=False)
 class _RangesOfFile:
     """The ranges of points of a file, and of those that were read the bounds in which points lie."""
 
     header: CloudHeader
-    last: _LastRead
     ranges: list[tuple[int, int]] = field(default_factory=list)   # (first, count)
     bounds: dict[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)   # {number of a range: (2,) m, the lowest, and the highest}
 
-    def within(self, number, reader, place, radius):
+    def within(self, number, place, radius):
         """(N, 4) x, y, z, m, and intensity of those points of a range that lie in a square; none where no point of the range lies near it."""
         if not self.may_hold(number, place, radius):   # another thread has read it meanwhile
             return np.empty((0, 4))
-        stored = self.last.get((self.header.path, number))
-        if stored is None:
-            stored = _Stored.of(list(reader.points(self.header, *self.ranges[number], LAS.points_per_range)))
-            places = stored.places(slice(None))[:2]
-            self.bounds[number] = places.min(axis=1), places.max(axis=1)
-            if self.may_hold(number, place, radius):
-                self.last.keep((self.header.path, number), stored)
+        stored = (_remembered if self.ranges[number][1] <= 2 * LAS.points_per_range else _RangesOfFile.stored)(self, number)
         return stored.within(place, radius)
+
+    def stored(self, number):
+        """The points of a range, whose bounds are known from then on."""
+        stored = _Stored.of(list(ParallelCloudReader(("z", "intensity")).points(self.header, *self.ranges[number], LAS.points_per_range)))
+        places = stored.places(slice(None))[:2]
+        self.bounds[number] = places.min(axis=1), places.max(axis=1)
+        return stored
 
     def numbers(self, reader, place, radius):
         """Numbers of the ranges in which points of a square may lie."""
@@ -301,3 +273,6 @@ class _RangesOfFile:
         low, high = self.bounds.get(number, (self.header.minimum[:2], self.header.maximum[:2]))
         reach = radius + LAS.bounds_tolerance
         return bool(((low <= place + reach) & (place - reach <= high)).all())
+
+
+_remembered = lru_cache(LAS.remembered_points // LAS.points_per_range)(_RangesOfFile.stored)   # the next place mostly lies where the last one did

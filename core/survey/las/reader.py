@@ -18,7 +18,7 @@ from ...io.crs import METRES, FileUnits, horizontal_part, in_metres, moved_by
 from ...io.weights import IO
 from ...lazy import laspy, pyproj
 from ..weights import LAS
-from .header import HeaderFields, find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
+from .header import find_damage, mend, opened, places_here_and_there, points_per_chunk, with_points_of_chunks
 
 CLOUD_SUFFIXES = (".las", ".laz")
 MAX_INTENSITY = 2**16 - 1   # derived: of 16 bits
@@ -52,18 +52,17 @@ def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
     return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
 
 
-def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None, sparse: bool = False,
+def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None,
                units: FileUnits = METRES) -> Any:
     """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
     known : the file's header, where it was read and checked for damage before
-    sparse : few points are read here and there: a chunk is decoded no further than they lie in it, by one thread
     units : of its coordinates, where it does not state them by its CRS
 
     Raises RoadExtractionError if the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    reader = _open(path, _mended(path) if known is None else _as_known(path, known), layers, sparse)
+    reader = _open(path, _mended(path) if known is None else mend(path).with_count(known.count), layers)
     _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
     return reader
 
@@ -100,19 +99,10 @@ def _mended(path):
     return with_points_of_chunks(path, mended)
 
 
-def _as_known(path, known):
-    """The same of a file whose points were counted."""
-    mended = mend(path)
-    with opened(path, mended) as file:
-        fields = HeaderFields.read(file)
-    return mended if fields is None else mended.with_count(fields, known.count)
-
-
-def _open(path, mended, layers, sparse=False):
+def _open(path, mended, layers):
     """laspy.LasReader of a file that is read as it was mended."""
     with _file_errors(f"{path} cannot be read as a LAS/LAZ file"):
-        return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers),
-                          laz_backend=laspy.LazBackend.Lazrs if sparse else None)
+        return laspy.open(opened(path, mended) if mended.patches else str(path), decompression_selection=layer_selection(layers))
 
 
 def layer_selection(layers: Iterable[str] | None) -> Any:
@@ -219,24 +209,12 @@ def read_blocks(path: str | os.PathLike[str], size: int = LAS.points_per_block, 
         promised, read = reader.header.point_count, 0
         while read < promised:
             check_cancelled()
-            points = read_points(reader, path, read, size)
+            with damage_from(path, promised, read):
+                points = reader.read_points(size)
+            if len(points) < min(size, promised - read):
+                raise truncated_file_error(path, promised, read + len(points))
             read += len(points)
             yield points
-
-
-def read_points(reader: Any, path: str | os.PathLike[str], first: int, count: int) -> Any:
-    """`count` points of an open laspy.LasReader from index `first` on, as a laspy.ScaleAwarePointRecord; fewer where the file has no more.
-
-    RoadExtractionError, which names `path`, if they cannot be read or the file ends early.
-    """
-    promised = reader.header.point_count
-    with damage_from(path, promised, first):
-        if reader.points_read != first:
-            reader.seek(first)
-        points = reader.read_points(count)
-    if len(points) < min(count, promised - first):
-        raise truncated_file_error(path, promised, first + len(points))
-    return points
 
 
 def truncated_file_error(path: str | os.PathLike[str], promised: int, present: int) -> RoadExtractionError:

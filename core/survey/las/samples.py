@@ -33,15 +33,14 @@ class FileSample:
 
 def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
     """Samples of the files that have points; RoadExtractionError where one cannot be read."""
-    samples = []
-    with ParallelCloudReader(("z", "intensity", "all_extra_bytes")) as reader:
-        for file in files:
-            if file.count:
-                places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
-                starts = sorted({reader.chunk_start(file, row) for row in places})
-                parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
-                raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-                samples.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
+    samples, reader = [], ParallelCloudReader(("z", "intensity", "all_extra_bytes"))
+    for file in files:
+        if file.count:
+            places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
+            starts = sorted({reader.chunk_start(file, row) for row in places})
+            parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
+            raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
+            samples.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
     return samples
 
 

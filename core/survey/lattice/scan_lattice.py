@@ -140,7 +140,7 @@ def _sample_windows(survey, road, until):
         places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
 
     samples: dict[tuple[int, int], list[_RotationWindow]] = {}
-    phase = Phase(_windows_at, survey, (road,), lambda place: survey.stretch(road, place[1], place[1]))
+    phase = Phase(_windows_at, survey, (road,), **survey.along(lambda place: (road, place[1], place[1])))
     for windows in (yield Asked(phase, places, until)):
         for key, window in windows.items():
             samples.setdefault(key, []).append(window)
@@ -244,8 +244,8 @@ def _mirror_phases(survey, road, rotations, samples, until):
     first, last = survey.store.span(road)
     # A length of its own, so that the points that are used do not depend on the length of sections.
     stretches = range(int(first // LATTICE.phase_stretch), int(last // LATTICE.phase_stretch) + 1)
-    phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), lambda numbers: survey.stretch(
-        road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch), listed=LATTICE.stretches_together)
+    phase = Phase(_phasors_of_stretches, survey, (road, stride, rotations, mounts), listed=LATTICE.stretches_together, **survey.along(
+        lambda numbers: (road, numbers[0] * LATTICE.phase_stretch, (numbers[-1] + 1) * LATTICE.phase_stretch)))
     for gathered in (yield Asked(phase, stretches, until)):
         for key, sums in gathered:
             bins[key].add(*sums)

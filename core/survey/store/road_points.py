@@ -133,16 +133,20 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[
             column[first:end] = store.section(*key)[name]
         return column
 
+    asked: tuple[Any, list[Any]] = None, []   # rows, which are asked for column by column, and in which sections they lie
+
     def load_rows(name, rows):
+        nonlocal asked
         if 2 * len(rows) > ends[-1]:
             return load(name).take(rows)
+        known = asked
+        if known[0] is not rows:
+            order = np.argsort(rows, kind="stable")
+            parts = np.split(order, np.searchsorted(rows, ends[1:-1], sorter=order))
+            known = asked = rows, [(key, part, rows.take(part) - end) for key, part, end in zip(sections, parts, ends) if len(part)]
         values = np.empty(len(rows), store.dtype[name])
-        order = np.argsort(rows, kind="stable")
-        ascending = rows.take(order)
-        bounds = np.searchsorted(ascending, ends)
-        for k in np.flatnonzero(np.diff(bounds)).tolist():
-            rows_of_section = slice(bounds[k], bounds[k + 1])
-            values[order[rows_of_section]] = store.section(*sections[k]).column_rows(name, ascending[rows_of_section] - ends[k])
+        for key, part, of_section in known[1]:
+            values[part] = store.section(*key).column_rows(name, of_section)
         return values
 
     dtype = store.dtype if names is None else np.dtype([(name, store.dtype[name]) for name in names])

@@ -24,7 +24,7 @@ from .columns import Columns
 from .records import COORDINATE_SCALE, Points
 
 LEAST_UNIT, MOST_UNIT = -2**31, 2**31 - 1   # of 0.1 mm, in which stations are kept
-STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
+STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, at most: a second of its time
 
 Key = tuple[int, int]   # numbers of a road and of a section of it
 Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number of its sections
@@ -179,14 +179,20 @@ class SectionStore:
         return sum(part.size for part in self._sections[road, section].parts)
 
     def stretches(self, numbers: Sequence[int] | None = None) -> list[Stretch]:
-        """Stretches of road with STRETCH_POINTS each, or fewer where there would be few stretches: of all roads, or of some `numbers`."""
+        """Stretches of road with STRETCH_POINTS at most, or fewer where there would be few stretches: of all roads, or of some `numbers`.
+
+        A road is halved, and its halves again, at section numbers that depend on no points, so that others in one place change no stretch elsewhere.
+        """
         stretches: list[Stretch] = []
-        points = max(min(STRETCH_POINTS, self._count // EXECUTION.least_tasks), 1)
+        most = min(STRETCH_POINTS, 1 << (self._count // EXECUTION.least_tasks).bit_length())
         for road in self.roads() if numbers is None else numbers:
             sections = np.array(self.sections(road))
-            ends = np.cumsum([self.size(road, number) for number in sections.tolist()])
-            cuts = sections[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1
-            bounds = np.unique(np.r_[sections[0], cuts, sections[-1] + 1]).tolist()
+            sizes, bits = np.array([self.size(road, number) for number in sections.tolist()]), np.zeros(len(sections), int)
+            for more in range(1, int(np.ptp(sections)).bit_length() + 2):
+                group = (sections >> more) - (sections[0] >> more)
+                bits[np.bincount(group, sizes)[group] <= most] = more
+            begins = np.flatnonzero((np.diff(bits) != 0) | (np.diff(sections >> bits) != 0)) + 1
+            bounds = [*sections[np.r_[0, begins]].tolist(), int(sections[-1]) + 1]
             stretches += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
         return stretches
 

@@ -71,7 +71,7 @@ def _match(text):
 
 def clock_times(texts: Sequence[str]) -> ClockTimes | None:
     """Clock times of (N,) texts; None where they are none."""
-    if not hold_times(texts) and not _hold_digits(texts):
+    if not hold_times(texts):
         return None
     matches = [*map(_match, texts)]
     dates = {match["date"] for match in filter(None, matches)} - {None}
@@ -86,11 +86,6 @@ def clock_times(texts: Sequence[str]) -> ClockTimes | None:
 def _common_zone(zones):
     """"GPS" or "UTC" where every time says what it is of, otherwise ""."""
     return "" if "" in zones or not zones else "GPS" if all(name.startswith("GPS") for name in zones) else "UTC"
-
-
-def _hold_digits(texts):
-    """Whether the dates before clocks are written in eight digits."""
-    return all(re.fullmatch(r"\d{8} .*:.*", text) for text in texts[:TRAJECTORY.texts_looked_at] if text)
 
 
 def _clock_seconds(match, midnight):

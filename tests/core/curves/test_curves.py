@@ -154,11 +154,11 @@ def test_arc_length_heading_and_curvature_belong_together(curve):
 
 
 @pytest.mark.parametrize("curve", EVERY_CURVE, ids=lambda c: f"{c.kind}{c.length:.0f}")
-def test_a_curve_survives_shifting_and_an_arc_or_a_clothoid_walking_back(curve):
+def test_a_curve_survives_shifting_and_an_arc_walking_back(curve):
     again = curve.moved(1000.0, -2000.0)
     u = np.linspace(0, curve.length, 50)
     np.testing.assert_allclose(again.at(u), curve.at(u) + [1000.0, -2000.0], atol=1e-8)
-    if curve.kind != "ellipse":
+    if isinstance(curve, Arc):
         back = curve.reversed()
         np.testing.assert_allclose(back.at(u), curve.at(curve.length - u), atol=1e-6)
         np.testing.assert_allclose(back.curvature(u), -curve.curvature(curve.length - u), atol=1e-6)

@@ -1,5 +1,7 @@
 """Lanes of a long road: those of its stretches, for as much work and memory as these take one by one."""
 
+from functools import wraps
+
 import numpy as np
 import pytest
 from counted_calls import calls
@@ -12,8 +14,9 @@ from lanewright.core.driving.lanes import laid_out
 from lanewright.core.execution.in_step import in_step
 from lanewright.core.execution.keep import Keep
 from lanewright.core.execution.phase import Threads
+from lanewright.core.markings.cross_section import estimate
 from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
-from lanewright.core.markings.cross_section.estimate import estimates_of_roads
+from lanewright.core.markings.cross_section.estimate import sections_of_stretch
 from lanewright.core.markings.cross_section.evidence import driven_offsets, evidence_of
 from lanewright.core.markings.cross_section.sections import sections_of_lines
 from lanewright.core.markings.cross_section.weights import EstimateWeights
@@ -84,7 +87,7 @@ def test_a_curb_that_is_corrected_moves_no_lane_a_kilometre_farther_on():
     np.testing.assert_allclose(corrected, as_measured, atol=1e-4)
 
 
-def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
+def test_a_correction_leaves_the_cross_sections_of_other_stretches_known(monkeypatch):
     """Of five kilometres less than one is looked at again, also where the first line then begins earlier."""
     def road(begin, end):
         made = street(50).paint(6.5, begin, end, kind="edge")
@@ -92,17 +95,16 @@ def test_a_correction_leaves_the_cross_sections_of_other_stretches_known():
         candidates = boundary_candidates(gather_boundaries(of_lines), EstimateWeights())
         return candidates, evidence_of(candidates, of_lines.s, *driven_offsets(made.frame, 0, of_lines.s)), -1, round(of_lines.s[0] / 0.5)
 
-    class Counting(Threads):
-        def run(self, phase, items, *args, **settings):
-            counts.append(len(items))
-            return super().run(phase, items, *args, **settings)
-
-    executor, counts = Keep(Counting(1)), []
+    looked_at = []
+    monkeypatch.setattr(estimate, "sections_of_stretch", wraps(estimate.sections_of_stretch)(
+        lambda source, item, *settings: looked_at.append(item[0].length.sum()) or sections_of_stretch(source, item, *settings)))
+    executor, lengths = Keep(Threads(1)), []
     for line in ((1010.0, 1090.0), (1010.0, 1140.0), (1.0, 90.0)):
-        estimate, = estimates_of_roads([road(*line)], 3.5, EstimateWeights(), executor)
-        assert np.isfinite(estimate.total)
-    # all stretches that differ; what is missing later is few, and made by threads of the caller
-    assert len(counts) == 1
+        found, = estimate.estimates_of_roads([road(*line)], 3.5, EstimateWeights(), executor)
+        assert np.isfinite(found.total)
+        lengths.append(sum(looked_at))
+        looked_at.clear()
+    assert lengths[0] > 1000.0 > max(lengths[1:])
 
 
 def test_tables_hold_the_stations_at_which_a_line_is():

@@ -353,12 +353,20 @@ def test_what_nobody_drove_between_the_solid_lines_of_two_opposite_lanes_is_a_me
     assert {round(float(np.median(street.offsets(line)))): row["direction"] for line, row in lanes} == {-2: 1, 5: -1}
 
 
-def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven():
-    """Two lanes of 3.4 m each way, dashes between those of a direction, and 2.8 m of bare asphalt between the directions."""
-    street = Street(vehicle=-3.1)
+@pytest.mark.parametrize("left_edge", ["line", "curb"])
+@pytest.mark.parametrize("median", [2.8, 3.3])
+def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_driven(median, left_edge):
+    """Two lanes of 3.4 m each way, dashes between those of a direction, and bare asphalt between the directions."""
+    inner, outer = median / 2 + 1.7, median / 2 + 5.1
+    street = Street(vehicle=-inner, again=(outer,) if left_edge == "curb" else ()).paint(-outer - 1.7, kind="edge")
     for side in (1, -1):
-        street.paint(side * 8.2, kind="edge").paint(side * 4.8, kind="", pattern="dashed")
-    assert lanes_of(street) == {-6.5: 1, -3.1: 1, 3.1: -1, 6.5: -1}
+        street.paint(side * (inner + 1.7), kind="", pattern="dashed")
+    if left_edge == "line":
+        found = lanes_of(street.paint(outer + 1.7, kind="edge"))
+    else:
+        found = lanes_of(street, edges=curbs(street, outer + 1.7))
+    assert sorted(found.items()) == [(pytest.approx(-outer, abs=0.02), 1), (pytest.approx(-inner, abs=0.02), 1),
+                                     (pytest.approx(inner, abs=0.02), -1), (pytest.approx(outer, abs=0.02), -1)]
 
 
 def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():

@@ -177,17 +177,18 @@ def test_a_survey_is_made_once_and_says_again_what_it_said(tmp_path):
 
     for make in (made, None):
         heard = RememberedMessages()
-        path = Keep(Asked(), work_folder(str(tmp_path / "work"))).made(["a.laz", 7], make, heard)
+        path = Keep(Asked(), work_folder(str(tmp_path / "work"))).made("a.laz", 7, make, heard)
         assert read_plain(path)[0] == {"points": 3} and heard.messages[-1] == ("warn", "The road is narrow.")
 
 
-def test_phases_of_another_survey_have_results_of_their_own(tmp_path):
-    asked = Asked()
-    for survey in ("a.laz", "b.laz", "a.laz"):
+def test_where_a_fact_of_the_whole_survey_changes_all_is_made_anew_and_the_fact_is_named(tmp_path):
+    asked, heard = Asked(), RememberedMessages()
+    for height in (2.5, 2.5, 2.6, 2.5):
         kept = Keep(asked, work_folder(str(tmp_path / "work")))
-        kept.made(survey, lambda progress: 1, RememberedMessages())
+        kept.stand_on("what follows", {"the CRS": "", "the height of the trajectory": height}, heard)
         assert results(kept, [7], source=TimeSlots(1), state=lambda item: "all of it") == [14]
     assert asked.items == [[7], [7]]
+    assert ["the height of the trajectory" in text and "CRS" not in text for _, text in heard.messages if "anew" in text] == [True, True]
 
 
 def test_of_a_folder_that_fills_its_disk_what_was_not_used_for_a_day_goes_and_nothing_of_others(tmp_path, monkeypatch):
@@ -197,10 +198,10 @@ def test_of_a_folder_that_fills_its_disk_what_was_not_used_for_a_day_goes_and_no
     old, long_ago = sorted(kept_in(work))[0], time.time() - 90_000
     for path in (old, work / "notes.txt"):
         os.utime(path, (long_ago, long_ago))
-    Keep(Asked(), work).made("a.laz", lambda progress: 1, RememberedMessages())
+    Keep(Asked(), work).made("a.laz", 7, lambda progress: 1, RememberedMessages())
     assert old.exists(), "there is room"
     monkeypatch.setattr(keep.shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
-    Keep(Asked(), work).made("a.laz", None, RememberedMessages())
+    Keep(Asked(), work).made("a.laz", 7, None, RememberedMessages())
     assert not old.exists() and len(kept_in(work)) == 3 and (work / "notes.txt").exists()
 
 
@@ -218,5 +219,5 @@ def test_what_another_user_keeps_in_a_full_folder_stays_and_ends_no_run(tmp_path
 
     monkeypatch.setattr(keep.shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
     monkeypatch.setattr(Path, "unlink", unlink)
-    Keep(Asked(), work).made("a.laz", lambda progress: 1, RememberedMessages())
+    Keep(Asked(), work).made("a.laz", 7, lambda progress: 1, RememberedMessages())
     assert theirs.exists() and not mine.exists()

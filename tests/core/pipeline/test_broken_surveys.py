@@ -18,7 +18,7 @@ ONE_SENTENCE = 700  # characters: what was seen, what was needed, what to try
 
 @pytest.fixture(scope="module")
 def street(made_survey):
-    return made_survey(length=32.0, pulse_rate=60_000.0, rotation_rate=90.0)
+    return made_survey(length=24.0, pulse_rate=60_000.0, rotation_rate=90.0)
 
 
 @pytest.fixture(scope="module")

@@ -3,16 +3,22 @@
 import os
 import shutil
 
+import laspy
+import numpy as np
 import pytest
 from heard import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import keep, phase
 from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.phase import Threads
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.survey import open_survey as opening
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
+from lanewright.core.survey.store.section_store import SectionStore
 
 pytestmark = pytest.mark.slow
 
@@ -22,10 +28,10 @@ def sample(made_survey):
     return made_survey(length=24.0, pulse_rate=40_000.0)
 
 
-def boundaries(sample, folder, curbs=CurbSettings(), progress=None, workers=0):
+def boundaries(sample, folder, curbs=CurbSettings(), progress=None, clouds=(), workers=0):
     made, path = sample
     execution = ExecutionSettings(workers, str(folder) if folder else "")
-    survey = open_survey([path], made.trajectory, SurveySettings(), progress or Progress(), execution)
+    survey = open_survey(clouds or [path], made.trajectory, SurveySettings(), progress or Progress(), execution)
     try:
         return draw_boundaries(find_curb_points(survey, BoundarySettings("both", curbs), progress or Progress()), survey.frame)
     finally:
@@ -54,6 +60,55 @@ def first_work(sample, tmp_path_factory, without):
 def work(first_work, tmp_path):
     """Another one like it, for it may be moved."""
     return shutil.copytree(first_work, tmp_path / "work")
+
+
+class Watched(Threads):
+    """Has each item done by itself, and notes which sections it reads that its state does not name: {function: (road, section)}."""
+
+    def __init__(self, folder):
+        super().__init__(1)
+        self.folder, self.read, self.unnamed, self.functions = folder, set(), {}, set()
+
+    def run(self, phase, items, progress=Progress(), keep=()):
+        recipe = phase.source.recipe(self.folder)
+        for item in items:
+            self.read.clear()
+            result = phase.function(recipe.open({}), item, *phase.arguments)
+            if phase.state is not None:
+                named = {tuple(part[:2]) for part in parts_in(phase.state(item))}
+                self.functions |= {phase.function.__name__}
+                self.unnamed.setdefault(phase.function.__name__, set()).update(self.read - named)
+            yield result
+
+
+def parts_in(state):
+    """The parts of sections, as of `SectionStore.state`, that a state names anywhere."""
+    if isinstance(state, (list, tuple)):
+        if len(state) == 6 and isinstance(state[2], str):
+            yield state
+        else:
+            for part in state:
+                yield from parts_in(part)
+
+
+def test_a_task_reads_no_points_but_those_that_its_result_is_kept_by(made_survey, tmp_path, monkeypatch):
+    made, path = made_survey(length=150.0, pulse_rate=15_000.0)
+    watched, section = Watched(tmp_path), SectionStore.section
+
+    def noted(store, road, number):
+        points = section(store, road, number)
+        watched.read |= {(road, number)} if len(points) and store.base is None and "cluster" not in points.names else set()
+        return points
+
+    monkeypatch.setattr(SectionStore, "section", noted)
+    monkeypatch.setattr(opening, "executor_for", lambda *_: watched)
+    survey = open_survey([path], made.trajectory)
+    ground = MeasuredGround(survey)
+    edges = draw_boundaries(find_curb_points(survey, BoundarySettings("both"), ground=ground), survey.frame, survey=survey, ground=ground).edges
+    extract_road_surface(survey, edges, ground=ground)
+    survey.store.close()
+    assert watched.functions > {"_steps_of_methods", "items_of_phases", "plan_steps_of_section", "surface_points"}
+    assert not any(watched.unnamed.values()), watched.unnamed
 
 
 def never(*_, **__):
@@ -103,6 +158,33 @@ def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_an
             monkeypatch.setattr(keep, "versions", lambda: {"python": "3.11", "numpy": "9.9"})
         open_survey([cloud], made.trajectory, settings, heard, ExecutionSettings(0, str(work))).store.close()
         assert not heard.says("read by an earlier run"), change
+
+
+def write_tiles(path, folder, left_out=0.0):
+    """Four tiles of a cloud along the road; of the last of them a share of the points is left out."""
+    cloud = laspy.read(path)
+    tile = np.searchsorted(np.quantile(cloud.gps_time, [0.25, 0.5, 0.75]), cloud.gps_time)
+    paths = [folder / f"tile_{number}.laz" for number in range(4)]
+    for number, target in enumerate(paths):
+        kept = (tile == number) & (np.random.default_rng(1).random(len(tile)) >= left_out * (number == 3))
+        if left_out == 0.0 or number == 3:
+            part = laspy.LasData(cloud.header)
+            part.points = cloud.points[kept]
+            part.write(str(target))
+    return paths
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_of_four_tiles_one_that_changed_is_read_again_and_the_curbs_far_from_it_stay(made_survey, tmp_path, workers):
+    sample, heard, far_heard = made_survey(length=120.0, pulse_rate=20_000.0), Heard(), Heard()
+    tiles = write_tiles(sample[1], tmp_path)
+    boundaries(sample, tmp_path / "work", clouds=tiles, workers=workers)
+    write_tiles(sample[1], tmp_path, 0.1)
+    changed = numbers_of(boundaries(sample, tmp_path / "work", clouds=tiles[::-1], workers=workers, progress=heard))
+    assert changed == numbers_of(boundaries(sample, "", clouds=tiles))
+    assert heard.says("3 of 4 parts of the work were finished by an earlier run") and not heard.says("made anew")
+    boundaries(sample, tmp_path / "work", clouds=tiles[:3], workers=workers, progress=far_heard)
+    assert far_heard.says("3 of 3 parts")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a full disk is made of /dev/full")

@@ -43,7 +43,8 @@ def thousands(tmp_path_factory):
 def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(thousands, suffix, size):
     file = thousands[suffix]
     whole = np.concatenate([block.array for block in read_blocks(file.path, 33_333)])
-    with ParallelCloudReader() as readers, ThreadPoolExecutor(3) as pool:
+    readers = ParallelCloudReader()
+    with ThreadPoolExecutor(3) as pool:
         ranges = list(readers.ranges([file, file], size))
         order = np.random.default_rng(size).permutation(len(ranges))
         found = dict(zip(order.tolist(), pool.map(lambda k: [points.array.copy() for points in readers.points(file, *ranges[k][1:], size)], order)))
@@ -55,15 +56,13 @@ def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(thousands
 @pytest.mark.parametrize("suffix, size, lengths", [
     ("las", 60_000, [60_000, 60_000]), ("laz", 60_000, [50_000, 50_000, 20_000]), ("laz", 1000, [1000] * 120)])
 def test_blocks_are_whole_chunks_where_these_are_not_far_larger(thousands, suffix, size, lengths):
-    file = thousands[suffix]
-    with ParallelCloudReader() as readers:
-        assert [len(points) for part in readers.ranges([file], size) for points in readers.points(file, *part[1:], size)] == lengths
+    readers, file = ParallelCloudReader(), thousands[suffix]
+    assert [len(points) for part in readers.ranges([file], size) for points in readers.points(file, *part[1:], size)] == lengths
 
 
 @pytest.mark.parametrize("suffix", ["las", "laz", "copc.laz"])
 def test_the_times_looked_at_span_the_file(thousands, suffix):
-    with ParallelCloudReader(("gps_time",)) as readers:
-        times = np.concatenate(list(readers.times(thousands[suffix])))
+    times = np.concatenate(list(ParallelCloudReader(("gps_time",)).times(thousands[suffix])))
     # the points of an octree lie in no order of time
     assert times.min() == 0.0 if suffix != "copc.laz" else 0.0 <= times.min() < 0.1
     assert times.max() == pytest.approx(12.0, abs=1e-3 if suffix != "copc.laz" else 0.1)

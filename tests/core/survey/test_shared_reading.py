@@ -196,7 +196,7 @@ def test_a_run_that_was_ended_while_it_read_goes_on_where_it_was(street, by_thre
     assert opened(street, progress=heard, work_folder=str(work), workers=workers) == by_threads
     now = read_parts(work)
     assert len(done) >= 3 and len(now) > len(done) and all(now[path] == file for path, file in done.items())
-    assert heard.says(f"{len(done)} of ")
+    assert heard.says(f"{len(done) - 1} of ")   # the other file holds what all parts depend on
 
 
 def test_a_work_folder_keeps_the_points_and_nothing_unfinished(street, by_threads, tmp_path):
@@ -256,13 +256,13 @@ class Halving(Threads):
         self.folder, self.halved = folder, 0
 
     def run(self, phase, items, progress=Progress(), keep=()):
-        for first, end, *more in items:
+        for *place, first, end in items:
             if phase.join is None or end - first < 2:
-                yield phase.result((first, end, *more))
+                yield phase.result((*place, first, end))
                 continue
             self.halved += 1
             middle = (first + end) // 2
-            yield phase.join([phase.result((first, middle)), phase.result((middle, end))])
+            yield phase.join([phase.result((*place, first, middle)), phase.result((*place, middle, end))])
 
 
 def test_halves_of_a_part_are_the_part(street, by_threads, tmp_path):

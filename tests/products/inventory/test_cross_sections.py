@@ -29,7 +29,7 @@ def column(rows, *names):
 
 @pytest.mark.parametrize("crossfall", [0.0, 0.06])
 def test_the_crossfall_of_both_sides_of_a_crown_is_measured(crossfall):
-    rows = rows_of(measured_road(crossfall=crossfall))
+    rows = rows_of(measured_road(crossfall=crossfall, density=700.0))
     true = [100 * crossfall if row["lane"] == 1 else -100 * crossfall for row in rows]
     assert len(rows) == 2 * 6
     np.testing.assert_allclose(column(rows, "crossf_pct")[:, 0], true, atol=0.05)
@@ -286,7 +286,7 @@ def test_the_report_is_as_high_for_a_road_to_the_north_and_names_what_exceeds():
 
 def test_landxml_and_the_table_have_the_ground_of_every_section(tmp_path):
     """Offsets are positive to the right in LandXML and to the left in the table; the road falls by 4 % to the right and climbs by 3 %."""
-    sections = measure_cross_sections(measured_road(crossfall=0.04, crown=False), BorderLayers(edges_of(), markings_of()))
+    sections = measure_cross_sections(measured_road(crossfall=0.04, crown=False, density=700.0), BorderLayers(edges_of(), markings_of()))
     root = read_xml(written(tmp_path, landxml_text(section_alignments(sections)), "sections.xml"), "LandXML", "a LandXML file")
     alignment = root.find("Alignments", "Alignment")
     assert [child.tag for child in alignment.children] == ["CoordGeom", "CrossSects"]

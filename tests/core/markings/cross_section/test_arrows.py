@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.markings.cross_section.candidates import boundary_candidates, gather_boundaries
+from lanewright.core.markings.cross_section.evidence import driven_offsets, evidence_of
 from lanewright.core.markings.cross_section.roads import arrows_of
+from lanewright.core.markings.cross_section.sections import sections_of_lines
+from lanewright.core.markings.cross_section.weights import EstimateWeights
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lanewright.simulator.parts.paint import left_arrow, straight_arrow, turn_arrow
 from lined_streets import HEIGHT, Street
@@ -64,3 +69,17 @@ def test_an_arrow_shorter_than_a_lane_of_a_road_has_counts_for_no_lane():
     small = (straight_arrow(50.0, 1.5, 1) - (50.0, 1.5)) * (1.5 / 4.5, 0.5) + (50.0, 1.5)
     assert np.ptp(small[:, 0]) < 2.0 and not len(ways(Street(), small))
     assert len(ways(Street(), small, straight_arrow(70.0, 1.5, 1))) == 1
+
+
+def test_arrows_in_the_middle_of_an_oblique_lane_lie_in_the_middle_of_its_mean_place():
+    """Two lines 3 m apart that move aside by one in twenty, and arrows all along."""
+    street = Street().paint(lambda s: 1.5 + s / 20).paint(lambda s: -1.5 + s / 20)
+    lines = sections_of_lines(PaintedLines.from_features(street.lines, street.frame))[0]
+    candidates = boundary_candidates(gather_boundaries(lines), EstimateWeights())
+    station = np.arange(10.0, 110.0, 3.0)
+    along, aside = street.frame.road(0).locate(*(street.places(station, station / 20) - street.frame.origin[:2]).T, corridor=9.0)
+    arrows = np.column_stack([along, aside, np.ones(len(station))])
+    found = evidence_of(candidates, lines.s, *driven_offsets(street.frame, 0, lines.s), arrows=arrows).arrows
+    middle = [candidates.left[k][candidates.valid[k]][1:-1].mean() for k in found[:, 0].astype(int)]
+    assert len(found) == len(station)
+    np.testing.assert_allclose(found[:, 1], middle, atol=0.02)

@@ -43,13 +43,13 @@ def test_points_beyond_the_stations_or_far_aside_do_not_count():
     assert not covered.any() and np.isnan(ends).all()
 
 
-def test_what_was_found_is_kept_until_points_are_added():
-    points = road_points((12.0, 1.05, 4.0))
+def test_points_are_looked_at_once_until_some_are_added(monkeypatch):
+    points, asked, seen = road_points((12.0, 1.05, 4.0)), [], RoadPoints.seen_surface
+    monkeypatch.setattr(RoadPoints, "seen_surface", lambda self: asked.append(self) or seen(self))
     first = surface_coverage(points, 0, STATIONS)
-    assert surface_coverage(points, 0, STATIONS)[0] is first[0] and not first[0].flags.writeable
-    assert surface_coverage(points, 0, STATIONS[:20])[0].shape == (20, first[0].shape[1])
+    assert surface_coverage(points, 0, STATIONS[:20])[0].shape == (20, first[0].shape[1]) and len(asked) == 1
     add(points, (20.0, -1.05, 4.0))
-    assert surface_coverage(points, 0, STATIONS)[0].sum() == first[0].sum() + 1
+    assert surface_coverage(points, 0, STATIONS)[0].sum() == first[0].sum() + 1 and len(asked) == 2
 
 
 def test_what_was_seen_when_the_surface_was_extracted_is_what_its_points_show():

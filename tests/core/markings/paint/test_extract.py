@@ -29,6 +29,12 @@ gdal = pytest.importorskip("osgeo.gdal")
 FRAME = drive()
 
 
+def grained(s, d, share, seed):
+    """(N,) brightness of places where a grain of two pixels of a photograph has some share of it."""
+    grain = gaussian_filter(np.random.default_rng(seed).normal(size=(3100, 800)), 2.0)
+    return 1.0 + share * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
+
+
 def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None, progress=Progress()):
     points = road_points(records, frame, section_length)
     path = folder / "image.tif"
@@ -107,12 +113,11 @@ def test_patches_seams_and_worn_tracks_are_not_paint_nor_are_the_rims_of_patches
 
 @pytest.mark.parametrize("darker", [1.5, 3.0])
 def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_and_its_edge_is_no_paint(tmp_path, darker):
-    line, grain = strip(10, 50, 1.0, 1.15), gaussian_filter(np.random.default_rng(1).normal(size=(3100, 800)), 2.0)
+    line = strip(10, 50, 1.0, 1.15)
 
     def level(s, d):
         """Grain of two pixels, and a shadow whose edge runs across the road."""
-        rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
-        return (1.0 + rough) / np.where((s > 28 + d) & (s < 40 + d), darker, 1.0)
+        return grained(s, d, 0.06, 1) / np.where((s > 28 + d) & (s < 40 + d), darker, 1.0)
 
     s, d = strewn(60.0, 4.0, -4.0, DENSITY)
     records = records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0)
@@ -125,7 +130,7 @@ def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_a
 
 @pytest.mark.parametrize("darker", [3.0, 4.0])
 def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_runs_from_the_sun_into_the_shade_is(tmp_path, darker):
-    line, grain = strip(5, 55, 1.0, 1.15), gaussian_filter(np.random.default_rng(2).normal(size=(3100, 800)), 2.0)
+    line = strip(5, 55, 1.0, 1.15)
 
     def lit(s, d):
         """Sun before and behind a row of trees; below them flecks, and the gap between two cars."""
@@ -133,8 +138,7 @@ def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_
         return (s < 20) | (s > 45) | flecks | ((np.abs(s - 37.5) < 0.2) & (np.abs(d + 2) < 0.9))
 
     def level(s, d):
-        rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
-        return (1.0 + rough) / np.where(lit(s, d), 1.0, darker)
+        return grained(s, d, 0.06, 2) / np.where(lit(s, d), 1.0, darker)
 
     s, d = strewn(60.0, 4.0, -4.0, DENSITY)
     found = found_on(records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0), tmp_path)
@@ -143,13 +147,24 @@ def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_
     assert len(np.unique(found.s[on_line] // 0.5)) >= 98
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_worn_stripes_are_paint_in_photographs_of_unequal_exposure_that_darken_to_one_side(tmp_path, way):
+    exposure = np.array([0.0, 0.2, -0.15, 0.1, -0.2, 0.05, 0.2, -0.1, 0.0, 0.15, -0.2, 0.1, 0.0, 0.2, -0.1])
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    stripes = (s > 28.5) & (s < 30.5) & (np.abs(d) < 3.25) & ((d + 8.25) % 1.0 < 0.5)
+    bright = np.where(stripes, 1.3, 1.0) * ASPHALT * grained(s, d, 0.04, 4) * np.exp(way * 0.08 * d + exposure[(s / 4).astype(int)])
+    found = found_on(records_at(FRAME, s, d, bright, 4.0), tmp_path)
+    on_stripes = (np.abs(found.s - 29.5) < 1.05) & ((found.d + 8.3) % 1.0 < 0.6)
+    assert on_stripes.mean() > 0.98
+    assert len(np.unique(found.d[on_stripes] // 0.5)) >= 12
+
+
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_specks_in_black_photographs_are_no_paint_and_a_line_before_and_behind_them_is(tmp_path):
-    line, grain = strip(0, 60, 1.0, 1.15), gaussian_filter(np.random.default_rng(1).normal(size=(3100, 800)), 2.0)
+    line = strip(0, 60, 1.0, 1.15)
     s, d = strewn(60.0, 4.0, -4.0, DENSITY)
-    rough = 0.06 * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
     specks = np.random.default_rng(3).random(len(s)) < 0.001
-    bright = np.where(line(s, d), 1.8, 1.0) * ASPHALT * (1.0 + rough) * ((s < 15) | (s > 45) | specks)
+    bright = np.where(line(s, d), 1.8, 1.0) * ASPHALT * grained(s, d, 0.06, 1) * ((s < 15) | (s > 45) | specks)
     found = found_on(records_at(FRAME, s, d, bright, 4.0), tmp_path)
     assert strip(0, 60, 0.95, 1.2)(found.s, found.d).mean() > 0.98
     assert {0, 1, 2, 9, 10, 11} <= set(np.unique(found.s // 5))
@@ -329,10 +344,9 @@ def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
     assert painted[covered].mean() > 0.85
 
 
-@pytest.mark.parametrize("wrong", [dict(lowest=0.0), dict(lowest=6.0, highest=5.0), dict(separation=-1.0)])
-def test_settings_without_sense_are_refused(wrong):
+def test_settings_without_sense_are_refused():
     with pytest.raises(RoadExtractionError):
-        MarkingSettings(**wrong)
+        MarkingSettings(separation=-1.0)
 
 
 def noisy_bar(frame, road, start, end, scanner, noisy, seed=3):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from lanewright.core.markings.paint.not_paint import clear_pieces
-from lanewright.core.markings.paint.settings import MarkingSettings
 
 SPOT = np.array([(row, column) for row in range(3) for column in range(3)])   # cells that one point brightens
 
@@ -18,7 +17,7 @@ def spots(step, axis, count=6):
 
 
 def pieces(mask, seen, brightness=20.0):
-    return clear_pieces(np.full(mask.shape, brightness), mask, seen, MarkingSettings())
+    return clear_pieces(np.full(mask.shape, brightness), mask, seen)
 
 
 @pytest.mark.parametrize("axis", [0, 1])

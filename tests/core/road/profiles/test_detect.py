@@ -9,6 +9,8 @@ from curbed_streets import driven, measured, parked_car, ringed_street, street, 
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.common.side_curbs import block_bounds
+from lanewright.core.road.profiles import detect
+from lanewright.core.road.weights import CURBS
 from road_layers import detect_curbs
 
 
@@ -126,6 +128,34 @@ def test_a_curb_with_plants_right_behind_it_is_found_by_a_spinning_scanner():
                          ids=["seam", "ramp", "bank"])
 def test_rings_of_a_spinning_scanner_are_no_curbs(ground):
     assert len(found(ringed_street(length=24.0, **ground), drive=driven(24.0))) == 0
+
+
+def test_where_few_profiles_are_noisy_they_alone_are_averaged_as_in_averages_of_all(monkeypatch):
+    """Ground that scatters in two places, as where plants grow."""
+    x, y, z, time = street(length=24.0)
+    rough = ((x > 6) & (x < 8)) | (x > 22)
+    z = z + np.random.default_rng(2).normal(0.0, 0.02, len(z)) * rough
+    by_noise, averages, asked, sections = detect._steps_by_noise, detect.find_averaged_steps, [], []
+
+    def averaged(lines, *limits):
+        asked.append((len(lines.low), limits))
+        return averages(lines, *limits)
+
+    def noted(lines, section, *others):
+        sections.append((lines, section, by_noise(lines, section, *others)))
+        return sections[-1][2]
+
+    monkeypatch.setattr(detect, "find_averaged_steps", averaged)
+    monkeypatch.setattr(detect, "_steps_by_noise", noted)
+    found((x, y, z, time), drive=driven(24.0))
+    assert 0 < sum(rows for rows, _ in asked) < 0.6 * sum(len(lines.low) for lines, *_ in sections)
+    for lines, section, steps in sections[:2]:
+        part = lines.part(*section)
+        noisy = section[0] + np.flatnonzero(part.spread > CURBS.noisy_share * CurbSettings().limits.clear_height)
+        of_all = averages(lines, *asked[0][1])
+        of_all, of_noisy = (steps[np.isin(steps.profile, noisy)] for steps in (of_all, steps))
+        for name in ("profile", "u", "h", "height", "skew", "support", "noise"):
+            np.testing.assert_array_equal(getattr(of_noisy, name), getattr(of_all, name), err_msg=name)
 
 
 def test_a_bend_is_followed_with_shorter_blocks():

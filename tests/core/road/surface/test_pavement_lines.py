@@ -26,7 +26,7 @@ def half_of(s):
     return np.full_like(s, HALF)
 
 
-def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=150, seed=5, gravel=GRAVEL, gain=None,
+def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=90, seed=5, gravel=GRAVEL, gain=None,
            grey_of=None, misfit=None):
     """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
 

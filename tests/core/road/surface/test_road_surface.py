@@ -55,3 +55,12 @@ def test_ground_that_one_road_only_grew_into_is_of_the_road_with_edges_there(ord
     assert sum(row[5] for row in rows if row[0] == 0) == pytest.approx(2300, abs=2)
     x, _, z = shapely.get_coordinates(of[0, "grown"], include_z=True).T
     np.testing.assert_allclose(z, 0.1 * x, atol=0.01)
+
+
+def test_a_rim_that_turns_back_on_itself_is_no_surface():
+    """A spike of no width, as rounding leaves it where an arm leaves a ring, stays a line where a part of the outline is of another road."""
+    outline = [(0.0, -4.0), (60.0, -4.0), (60.0, 0.0), (70.0, 0.0), (60.0, 0.0), (60.0, 24.0), (0.0, 24.0)]
+    grown, bounded = shapely.Polygon([(x, y, 0.0) for x, y in outline]), rectangle(1, 0.0, 20.0, 4.0, 24.0, rise=0.0)
+    assert shapely.difference(grown, bounded[-1]).geom_type == "GeometryCollection"
+    of, _ = roads_beside((0, "grown", 0.0, 100.0, grown.area, 1680, grown), bounded)
+    assert of[0, "grown"].area == pytest.approx(60.0 * 28.0 - 20.0 * 20.0, abs=0.1)

@@ -171,7 +171,7 @@ def test_another_scale_that_no_number_of_bits_explains_is_told(tmp_path):
 def test_points_of_a_file_with_fewer_bits_are_read_in_the_scale_of_the_others(tmp_path, size):
     values = np.clip(np.rint(120 * REFLECTANCE), 0, 255)
     file, = read_headers([cloud(tmp_path / "few.laz", values)])
-    with ParallelCloudReader() as reader:
-        found = [points["intensity"].copy() for part in reader.ranges([file], size)
-                 for points in reader.points(replace(file, brightness=256), *part[1:], size)]
+    reader = ParallelCloudReader()
+    found = [points["intensity"].copy() for part in reader.ranges([file], size)
+             for points in reader.points(replace(file, brightness=256), *part[1:], size)]
     np.testing.assert_array_equal(np.concatenate(found), 256 * values)

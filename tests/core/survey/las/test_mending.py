@@ -45,9 +45,9 @@ def check_all_read(path, las):
     header = read_header(path)
     assert header.count == len(las.points)
     np.testing.assert_allclose(x_of(path), las.x, atol=1e-3)
-    with ParallelCloudReader() as reader:
-        found = np.concatenate([np.array(points.x) for part in reader.ranges([header], 30_000)
-                                for points in reader.points(header, *part[1:], 30_000)])
+    reader = ParallelCloudReader()
+    found = np.concatenate([np.array(points.x) for part in reader.ranges([header], 30_000)
+                            for points in reader.points(header, *part[1:], 30_000)])
     np.testing.assert_allclose(found, las.x, atol=1e-3)
     return header
 
