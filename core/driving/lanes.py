@@ -15,7 +15,7 @@ from ..markings.cross_section.beside import BEYOND
 from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
-from ..markings.cross_section.sequence import beside_island, beside_surface_end, lane_places
+from ..markings.cross_section.sequence import beside_island, lane_places
 from ..markings.cross_section.weights import BARE, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
@@ -273,7 +273,7 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     seen = np.stack([boundaries.seen[row, rows] for row in sides])
     between_both = all(painted) or not any(painted)
     beside_one = any(painted) and not between_both
-    if beside_one and (line_distance or beside_surface_end(*made_of)):
+    if beside_one and (line_distance or SURFACE_END[made_of].any()):
         # the end of the surface is ragged, a lane is not
         even = np.full(len(width), 2 * line_distance or np.median(width))
         begin, width = begin if painted[0] else begin + (even - width) * span.count, even
@@ -281,7 +281,7 @@ def _part(boundaries, span, rows, made_of, begin, width, line_distance):
     shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
     status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
     # a curb that a lane reaches to shows its place too
-    reaches = BARE in made_of or beside_one and not beside_surface_end(*made_of) \
+    reaches = BARE in made_of or beside_one and not SURFACE_END[made_of].any() \
         and np.nanmedian(np.abs(boundaries.d[span.left, rows] - boundaries.d[span.right, rows] - width * span.count)) < SAME_LANE
     left = span.left if span.place == span.count - 1 else -1
     right = span.right if span.place == 0 else -1
@@ -297,24 +297,20 @@ def _filled(values):
 
 
 def _followed(parts_of_lane, parts, first):
-    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one.
-
-    Where another lane opens on one side, the border on the other side stays; one that divides evenly goes on as neither.
-    """
-    steps = np.full((len(parts), len(parts_of_lane)), np.inf)   # m, of both borders
+    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first."""
+    pairs = []
     for k, part in enumerate(parts):
         for j, lane in enumerate(parts_of_lane):
             track = lane[-1]
-            aside, wider = part.d[0] - track.d[-1], (part.width[0] - track.width[-1]) / 2
-            of_borders = np.abs([aside + wider, aside - wider])
+            step = abs(part.d[0] - track.d[-1])
             if track.last == first - 1 and track.direction == part.direction \
-                    and of_borders.min() < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
-                steps[k, j] = of_borders.sum()
-    follows = {}
-    for k, j in np.argwhere(np.isfinite(steps)).tolist():
-        others = np.append(np.delete(steps[k], j), np.delete(steps[:, j], k))
-        if steps[k, j] + SAME_LANE < others.min(initial=np.inf):
+                    and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
+                pairs.append((step, k, j))
+    follows, used = {}, set()
+    for _, k, j in sorted(pairs):
+        if k not in follows and j not in used:
             follows[k] = j
+            used.add(j)
     return follows
 
 
