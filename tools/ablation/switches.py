@@ -298,7 +298,6 @@ ROWS = (
         ("where one drives beside a curb", "cross_section.beside:_driven_beside", lambda offset, *_: (np.zeros(offset.shape[1]),) * 2,
          "main streets whose lanes reach up to the curb, and those with gutters"),
         ("lanes beside islands", "cross_section.sequence:beside_island", gives(np.zeros((), bool)), "island beside an edge line"),
-        ("lanes beside the surface's end", "cross_section.sequence:beside_surface_end", gives(np.zeros((), bool))),
         ("the road's own lane width", "cross_section.roads:_usual_width", lambda _known, _estimates, usual: (usual, False))),
     *_room("lanes", "driving",
         ("tapers", "lanes:laid_out", nth(0), "slip road that joins"),

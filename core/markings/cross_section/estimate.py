@@ -393,8 +393,3 @@ def _second_places(estimate, lanes, strips, rows, way):
             lanes_there = tuple((middle, wide, estimate.first_direction * sign) for (middle, wide, _), sign in zip(lanes_there, (1, -1)))
         result[k] = Reading(estimate.weights.unpainted_divider, lanes_there)
     return result
-
-
-def boundary_uses(estimate: RoadEstimate) -> np.ndarray:
-    """(I, M) what each boundary separates in the best sequence, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
-    return separated_kinds(estimate.sections.chosen(estimate.choice))[:, 0]

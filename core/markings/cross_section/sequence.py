@@ -60,7 +60,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     loose = open_left ^ open_right
     each_width = (left - right) / number
     alone = np.where(np.equal(number, 1) & (beside[..., BEYOND] != 0), beside[..., WIDTH], usual)
-    hidden = loose & beside_surface_end(made_left, made_right)
+    hidden = loose & (SURFACE_END[made_left] | SURFACE_END[made_right])
     # the room of an interval is not quite the same at all its places
     full = np.abs(each_width - alone) < SAME_LANE
     likely = beside_island(made_left, made_right) & (each_width > LANES.likely_share[0] * usual) & (each_width < LANES.likely_share[1] * usual)
@@ -81,11 +81,6 @@ def beside_of(c: Candidates, strips: LaneStrips) -> np.ndarray:
 def beside_island(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
     """Bool, whether a strip reaches to the curb of an island."""
     return (made_left == ISLAND) | (made_right == ISLAND)
-
-
-def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
-    """Bool, whether a strip reaches to where the surface ends without an edge, or to where nothing is known of it."""
-    return SURFACE_END[made_left] | SURFACE_END[made_right]
 
 
 # What it costs to take the strip between two boundaries for a lane, for several lanes, or for what nobody drives on.
@@ -146,7 +141,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
     # strips with paint on one side only, and of those the ones whose other side may be hidden
     loose = any_paint & ~both_paint
-    hidden = loose & beside_surface_end(made_left, made_right)
+    hidden = loose & (SURFACE_END[made_left] | SURFACE_END[made_right])
     uncovered = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     # a street that was driven between two borders has a lane without any paint
     border = np.isin(c.made_of, (CURB, PAVEMENT)) & evidence.bare[:, None]

@@ -26,7 +26,6 @@ from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.road_points import RoadPoints, columns_of_roads
-from ..cross_section.estimate import boundary_uses
 from ..cross_section.evidence import hatched_areas
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import EdgeSections, sections_of_lines
@@ -280,7 +279,8 @@ def _kinds_of_lines(estimates):
     parts: dict[int, list[tuple[float, int, np.ndarray]]] = {}
     for road in estimates.roads.values():
         c, estimate = road.estimate.candidates, road.estimate
-        uses, kinds = boundary_uses(estimate), separated_kinds(estimate.sections)
+        kinds = separated_kinds(estimate.sections)
+        uses = kinds[np.arange(len(kinds)), estimate.choice]
         nats = np.stack([np.where(kinds == use, estimate.second[:, :, None], np.inf).min(axis=1) for use in KINDS])
         for i, m in zip(*np.nonzero(np.isin(uses, list(KINDS)) & c.painted)):
             current = list(KINDS).index(uses[i, m])
