@@ -215,20 +215,14 @@ def _stop_lines(candidates, s, markings, road):
 OUTSIDE_PAINT = CELL_SIZE / 2   # derived: m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 
 
-def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
-    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
-    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
-    if not len(rows):
+def hatched_places(borders: RowTable) -> np.ndarray | None:
+    """(K, BINS) bool, what lies in hatched areas, of which `borders_of_hatching` gives the borders; None where there are none."""
+    if not len(borders):
         return None
-    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
-    shapely.prepare(shape)
-    first, last, low, high = markings.extent[rows].T
-    near = np.unique(np.concatenate([np.arange(*ends) for ends in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))]))
-    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    columns = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
-    result = np.zeros((len(s), BINS), bool)
-    places = frame.road(road).to_map(np.repeat(s[near], len(columns)), np.tile(offsets[columns], len(near)))
-    result[np.ix_(near, columns)] = shapely.contains_xy(shape, *places).reshape(len(near), len(columns))
+    result, offsets = np.zeros((borders.spans.stations, BINS), bool), (np.arange(BINS) + 0.5) * BIN - FAR
+    for row in range(0, len(borders), 2):
+        left, right = borders.row(row)[:, None], borders.row(row + 1)[:, None]
+        result[borders.spans.first[row]:borders.spans.end[row]] |= (offsets < left) & (offsets > right)
     return result
 
 
