@@ -561,7 +561,7 @@ class LANES:
     likely_share: tuple[float, float] = 0.8, 1.5   # of the usual width of a lane: lanes in bends
     least_left_over: float = 0.6   # m between two lines beyond a lane beside one of them: less is how widths of lanes scatter
     max_lanes: int = 4   # between two boundaries without paint between them
-    hatched_share: float = 0.12   # of a strip that is covered by hatching: its bars leave most of it free
+    hatched_share: float = 0.35   # of a strip that is a hatched area
     asphalt_of_a_lane: tuple[float, float] = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
     asphalt_softness: float = 0.2   # m by which that is uncertain
     other_sigma: float = 0.8   # m, scatter of lane widths from road to road

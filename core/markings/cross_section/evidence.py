@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from scipy.ndimage import grey_closing, median_filter
 
+from ...common.arrays import mask_runs
 from ...countries.catalogue import NEUTRAL
 from ...road.surface.extract import SurfaceSettings
 from ...survey.frame.placement import located
@@ -214,20 +215,14 @@ def _stop_lines(candidates, s, markings, road):
 OUTSIDE_PAINT = CELL_SIZE / 2   # derived: m: outlines are of whole cells, of which paint reaches into the outermost ones by half on average
 
 
-def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
-    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
-    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
-    if not len(rows):
+def hatched_places(borders: RowTable) -> np.ndarray | None:
+    """(K, BINS) bool, what lies in hatched areas, of which `borders_of_hatching` gives the borders; None where there are none."""
+    if not len(borders):
         return None
-    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
-    shapely.prepare(shape)
-    first, last, low, high = markings.extent[rows].T
-    near = np.unique(np.concatenate([np.arange(*ends) for ends in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right"))]))
-    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    columns = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
-    result = np.zeros((len(s), BINS), bool)
-    places = frame.road(road).to_map(np.repeat(s[near], len(columns)), np.tile(offsets[columns], len(near)))
-    result[np.ix_(near, columns)] = shapely.contains_xy(shape, *places).reshape(len(near), len(columns))
+    result, offsets = np.zeros((borders.spans.stations, BINS), bool), (np.arange(BINS) + 0.5) * BIN - FAR
+    for row in range(0, len(borders), 2):
+        left, right = borders.row(row)[:, None], borders.row(row + 1)[:, None]
+        result[borders.spans.first[row]:borders.spans.end[row]] |= (offsets < left) & (offsets > right)
     return result
 
 
@@ -253,7 +248,7 @@ def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s
             # bars touch the border only at their ends
             outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR),
                                  size=int(2 * EVIDENCE.bar_reach / STATION_STEP) + 1, mode="nearest")
-            borders[side] = sign * (outer - OUTSIDE_PAINT - EVIDENCE.half_border)
+            borders[side] = sign * np.where(outer > -FAR, outer - OUTSIDE_PAINT - EVIDENCE.half_border, np.nan)
         for begin, reached in (_reach([lines[j]], frame, road, s) for j in lines_of[k]):
             low, high = max(begin, first), min(begin + reached.shape[1], first + reach.shape[1])
             if low < high:
@@ -269,8 +264,11 @@ def hatched_areas(markings: MarkingObjects, frame: RoadFrame, road: int) -> list
         return []
     s = np.arange(ends.min(), ends.max() + STATION_STEP, STATION_STEP)
     borders = borders_of_hatching(markings, frame, road, s)
-    sides = [np.c_[s, borders[row, :]] for row in range(len(borders))]
-    return [np.concatenate([left, right[::-1]])[np.isfinite(np.r_[left[:, 1], right[::-1, 1]])] for left, right in zip(sides[::2], sides[1::2])]
+    result = []
+    for k in range(0, len(borders), 2):
+        left, right = (np.c_[s[borders.spans.first[k]:borders.spans.end[k]], borders.row(row)] for row in (k, k + 1))
+        result += [np.r_[left[first:end], right[first:end][::-1]] for first, end in mask_runs(np.isfinite(left + right)[:, 1]) if end > first + 1]
+    return result
 
 
 def _meeting(areas, shapes):

@@ -158,7 +158,8 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     else:   # paint tells how far the surface reaches
         covered, ends = (None, None) if paint is None else between_ends(surface_coverage(paint, number, s)[1], likely)
     open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
-    hatched, borders = (None if markings is None else of_areas(markings, frame, number, s) for of_areas in (hatched_places, borders_of_hatching))
+    borders = None if markings is None else borders_of_hatching(markings, frame, number, s)
+    hatched = None if borders is None else hatched_places(borders)
     boundaries = gather_boundaries(of_road, curbs, ends, open_ends, borders, pavement)
     candidates = boundary_candidates(boundaries, weights)
     seen = [np.concatenate(parts) for parts in zip(driven, offsets_of_others(frame, number, s))]

@@ -81,9 +81,10 @@ def led_on(ground: GroundRaster, end: FollowedEnds) -> PlanSteps:
     steps: list[PlanSteps] = []
     trials = RETURN.first_turns, RETURN.first_bends, RETURN.first_sigmas
     while len(steps) * RETURN.led_step < RETURN.line_direction_length + RETURN.max_led_length:
-        seen, step = _best_average(arc, points, *trials) or (None, None)
-        if seen is None:
+        best = _best_average(arc, points, *trials)
+        if best is None:
             break
+        seen, step = best
         steps.append(step)
         arc, trials = seen.onward(RETURN.led_step), (RETURN.next_turns, RETURN.next_bends, RETURN.next_sigmas)
     # one average at least begins beyond the end

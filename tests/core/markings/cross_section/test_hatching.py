@@ -1,9 +1,11 @@
 """The borders of hatched areas bound the lanes beside them."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
-from lanewright.core.markings.cross_section.evidence import borders_of_hatching
+from lanewright.core.markings.cross_section.evidence import borders_of_hatching, hatched_areas
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
@@ -11,14 +13,19 @@ from shapely.geometry import Polygon
 S = np.arange(0.0, 120.0, 0.5)
 
 
-def borders(*areas):
-    """(2, K) borders of the one hatched area of a street, painted as (first, last, right, left, class)."""
-    street = Street(vehicle=0.0)
+def painted(street, areas):
+    """MarkingObjects of what is painted as (first, last, right, left, class)."""
     layer = Features("PolygonZ", MARKINGS)
     for first, last, right, left, kind in areas:
         corners = street.places([first, last, last, first], [right, right, left, left])
         layer.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": kind, "use": "other" if kind == "hatch" else "keep"})
-    found = borders_of_hatching(MarkingObjects.from_features(layer, street.frame), street.frame, 0, S)
+    return MarkingObjects.from_features(layer, street.frame)
+
+
+def borders(*areas):
+    """(2, K) borders of the one hatched area of a street, painted as of `painted`."""
+    street = Street(vehicle=0.0)
+    found = borders_of_hatching(painted(street, areas), street.frame, 0, S)
     rows = found[np.arange(len(found)), :]
     # the borders beside the bars and those of the tips follow each other
     assert len(rows) % 2 == 0 and (np.isfinite(rows[::2]).sum(0) <= 1).all()
@@ -47,3 +54,17 @@ def test_without_a_line_the_ends_of_the_bars_are_the_border():
 def test_a_lane_line_farther_away_is_no_border():
     left, _ = borders(*bars(-1.0, 1.0), (35.0, 85.0, 1.9, 2.02, "lane"))
     assert np.nanmax(left) < 1.0
+
+
+def test_outlines_of_the_areas_of_a_road_twice_as_long_take_twice_the_memory():
+    most = []
+    for length in (1500.0, 3000.0):
+        street = Street(length=length, vehicle=0.0)
+        markings = painted(street, [(s + step, s + step + 0.5, -1.0, 1.0, "hatch") for s in np.arange(20.0, length - 20.0, 40.0)
+                                    for step in np.arange(0.0, 14.0, 1.5)])
+        tracemalloc.start()
+        areas = hatched_areas(markings, street.frame, 0)
+        most.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        assert len(areas) == len(np.arange(20.0, length - 20.0, 40.0)) and all(np.ptp(area[:, 0]) < 15.0 for area in areas)
+    assert most[1] < 2.5 * most[0]

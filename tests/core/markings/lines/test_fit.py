@@ -148,6 +148,15 @@ def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is()
     assert street.distance(lines.geometries[0], -4.0).max() < 0.02
 
 
+def test_lines_beside_bars_that_lie_far_apart_along_a_tight_bend_are_lines():
+    """The bars lie 2.8 m apart on the inside of the bend, but nearly 5 m along the axis, which is farther than those of one area."""
+    street = ClusteredStreet(length=60.0, radius=25.0, half_width=16.0)
+    for s in np.arange(15.0, 50.0, 5.2):
+        street.paint(s, s + 0.5, 7.0, across=9.0, kind="hatch", use="other")
+    lines = street.paint(18, 47, -4.0, kind="edge").paint(18, 47, 0.0, kind="centre").lines()
+    assert told(lines, "status") == [("measured",), ("measured",)]
+
+
 @pytest.mark.parametrize("outlined", [False, True])
 def test_a_double_line_ends_at_a_hatched_island_though_the_edge_lines_run_on_beside_it_and_it_goes_on_behind(outlined):
     street = ClusteredStreet(radius=None).paint(0, 120, -4.0, kind="edge").paint(0, 120, 4.0, kind="edge")
