@@ -590,7 +590,8 @@ def read_files(files: list[CloudHeader], frame: RoadFrame, store: SectionStore, 
     blocks, summary, sampled, readers = _BlockReader(frame, choice, slots), _BlockSummary(), [], ParallelCloudReader(choice.layers)
     ranges = list(readers.ranges(files, block))
     drop = blocks.rough_drop((points for number, first, count in ranges for points in readers.points(files[number], first, count, block)), progress)
-    facts = {"frame": frame, "choice": (choice, block, slots), "sensor height": drop, "sections": store.section_length}
+    facts = {"the lines of the roads": frame, "the height of the trajectory above the road": drop,
+             "its number of points, their times or their intensities": (choice, block, slots, store.section_length)}
     executor.stand_on("reading", facts, progress)
     by_path, rows = [replace(file, path=os.path.abspath(file.path), crs="") for file in files], np.array(ranges, np.int64).reshape(-1, 3)
     chosen, source = blocks.chosen(drop), _PartsOfFiles({file.path: file for file in by_path}, store, blocks, drop, {

@@ -77,8 +77,10 @@ def _survey_of_run(executor, read, progress):
         return read_here(progress)
     survey = survey_in_file(str(executor.made(states_of(read[0]), read[1:], lambda progress: read_here(progress).contents(), progress)))
     survey.files = read[0]
-    facts = {name.replace("_", " "): getattr(survey, name) for name in SHIPPED if name != "counts"}
-    executor.stand_on("what follows", dict(facts, sections=survey.store.section_length), progress)
+    facts = {name: getattr(survey, name) for name in SHIPPED if name != "counts"}
+    executor.stand_on("what follows", {
+        "the lines of the roads": facts.pop("frame"), "the height of the trajectory above the road": facts.pop("sensor_height"),
+        "by how much the passes were moved": facts.pop("moves"), "its scanners or its density": (facts, survey.store.section_length)}, progress)
     return survey
 
 

@@ -207,7 +207,9 @@ class SurveyScanlines:
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
         self.known = self.settings, sensor_height, self.lattice, decimation and decimation.known
-        self.reach = max(margin_of_meshes(survey, road.number, self.lattice) for road in survey.frame.roads)
+        # of the planes beside a section that its corners need, too
+        self.reach = max(margin_of_meshes(survey, road.number, self.lattice) for road in survey.frame.roads) \
+            + (SCANLINE.neighbour_lines + 4) * self.interval
 
     @property
     def executor(self) -> Executor:

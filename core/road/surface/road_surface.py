@@ -97,7 +97,7 @@ def without_overlaps(frame: RoadFrame, stretches: Sequence[tuple]) -> list[tuple
             (height, *claim), (other_height, *other_claim) = _claim(frame, stretches[i], part), _claim(frame, stretches[j], part)
             if abs(height - other_height) < FRAME.level_separation:
                 loser = i if claim > other_claim else j
-                rest[loser] = shapely.multipolygons(_polygons(shapely.difference(rest[loser], part)))   # without lines that remain of a rim
+                rest[loser] = shapely.MultiPolygon(_polygons(shapely.difference(rest[loser], part)))   # without lines that remain of a rim
     return [row for stretch, left in zip(stretches, rest) for row in _parts(frame, stretch, left)]
 
 

@@ -152,6 +152,7 @@ def _layout(file):
 def _read_layout(file, state):
     with open_cloud(file.path, known=file) as reader:
         header = reader.header
+    header.evlrs = None   # they may be large, as the hierarchy of a COPC file is
     if not header.are_points_compressed:
         return _Layout(header)
     record, start, table = chunks_of(file.path)

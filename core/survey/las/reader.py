@@ -48,8 +48,12 @@ class CloudHeader:
 
 
 def states_of(files: Sequence[CloudHeader]) -> list[tuple[str, int, int]]:
-    """Path, size and time of change of each file."""
-    return [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
+    """Path, size and time of change of each file; RoadExtractionError where one is gone."""
+    states = []
+    for file in files:
+        with _file_errors(f"{file.path} cannot be read any more"):
+            states.append((os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns))
+    return states
 
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, known: CloudHeader | None = None,

@@ -14,6 +14,7 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.phase import Threads
 from lanewright.core.road.common.curb_limits import CurbSettings
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.survey import open_survey as opening
@@ -91,7 +92,8 @@ def parts_in(state):
                 yield from parts_in(part)
 
 
-def test_a_task_reads_no_points_but_those_that_its_result_is_kept_by(made_survey, tmp_path, monkeypatch):
+@pytest.mark.parametrize("planes", [ScanlineSettings(), ScanlineSettings(interval=10.0)])
+def test_a_task_reads_no_points_but_those_that_its_result_is_kept_by(made_survey, tmp_path, monkeypatch, planes):
     made, path = made_survey(length=150.0, pulse_rate=15_000.0)
     watched, section = Watched(tmp_path), SectionStore.section
 
@@ -102,9 +104,9 @@ def test_a_task_reads_no_points_but_those_that_its_result_is_kept_by(made_survey
 
     monkeypatch.setattr(SectionStore, "section", noted)
     monkeypatch.setattr(opening, "executor_for", lambda *_: watched)
-    survey = open_survey([path], made.trajectory)
-    ground = MeasuredGround(survey)
-    edges = draw_boundaries(find_curb_points(survey, BoundarySettings("both"), ground=ground), survey.frame, survey=survey, ground=ground).edges
+    survey = open_survey([path], made.trajectory, SurveySettings(section_length=5.0))
+    ground, settings = MeasuredGround(survey), BoundarySettings("both", planes=planes)
+    edges = draw_boundaries(find_curb_points(survey, settings, ground=ground), survey.frame, survey=survey, ground=ground).edges
     extract_road_surface(survey, edges, ground=ground)
     survey.store.close()
     assert watched.functions > {"_steps_of_methods", "items_of_phases", "plan_steps_of_section", "surface_points"}

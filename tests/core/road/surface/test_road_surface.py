@@ -46,6 +46,11 @@ def test_what_both_roads_bound_is_of_the_one_driven_nearer_and_a_strip_along_its
     assert [row[:4] for row in rows] == [(0, "measured", 0.0, 100.0), (1, "measured", 60.0, 100.0)]
 
 
+def test_of_a_stretch_that_lies_wholly_in_that_of_another_road_nothing_is_left():
+    _, rows = roads_beside(rectangle(0, 0.0, 100.0, -4.0, 4.0), rectangle(1, 20.0, 60.0, -3.0, 3.0))
+    assert [row[:4] for row in rows] == [(0, "measured", 0.0, 100.0)]
+
+
 @pytest.mark.parametrize("order", [1, -1])
 def test_ground_that_one_road_only_grew_into_is_of_the_road_with_edges_there(order):
     grown, bounded = rectangle(0, 0.0, 100.0, -4.0, 24.0, "grown"), rectangle(1, 40.0, 60.0, -1.0, 24.0)

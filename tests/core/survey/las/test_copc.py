@@ -1,5 +1,6 @@
 """COPC: the octree is read as the points in it, whatever its hierarchy claims."""
 
+import gc
 import struct
 
 import laspy
@@ -8,6 +9,7 @@ import pytest
 from copc_files import ENTRY, write_copc
 from drives import ahead, bend, chain, contents, drive, surveyed_points, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
 from lanewright.core.survey.las.reader import read_header
 from lanewright.core.survey.open_survey import open_survey
 
@@ -34,6 +36,11 @@ def test_its_header_says_what_that_of_the_laz_says(street):
     laz, copc = (read_header(path) for path in street[1:])
     for name in ("version", "point_format", "count", "minimum", "maximum", "crs", "has_time"):
         assert getattr(copc, name) == getattr(laz, name), name
+
+
+def test_when_some_of_its_points_were_read_no_hierarchy_of_it_is_held_any_more(street):
+    list(ParallelCloudReader().times(read_header(street[2])))
+    assert not [held for held in gc.get_objects() if isinstance(held, laspy.LasHeader) and held.evlrs]
 
 
 def test_the_survey_is_that_of_the_laz(street):

@@ -8,7 +8,8 @@ import pytest
 from copc_files import write_copc
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.las.header import find_damage
-from lanewright.core.survey.las.reader import read_blocks
+from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
+from lanewright.core.survey.las.reader import read_blocks, read_header
 
 
 @pytest.fixture(params=[("1.2", 1, "laz"), ("1.4", 6, "laz"), ("1.4", 6, "las")], ids=lambda kind: " ".join(map(str, kind)))
@@ -45,6 +46,13 @@ def test_wrong_lengths_are_reported_in_one_sentence(cloud, at, kind, value, says
         return   # the place of the points follows from their number
     with pytest.raises(RoadExtractionError, match=says):
         read(changed(cloud, at, kind, value))
+
+
+def test_a_file_that_goes_while_its_survey_is_read_is_named(cloud):
+    header = read_header(cloud)
+    cloud.unlink()
+    with pytest.raises(RoadExtractionError, match=f"{cloud.name} cannot be read any more"):
+        list(ParallelCloudReader().times(header))
 
 
 def test_more_chunks_than_bytes_are_not_believed(cloud):
