@@ -100,14 +100,17 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
 
 def _over_areas(d, hatching):
     """Offsets of lines, led over the hatched areas on which they are interrupted as the lines lie that are not."""
-    values, hatched = d.values.copy(), np.isin(np.arange(d.spans.stations), hatching.spans.station[np.isfinite(hatching.values)])
+    values = d.values.copy()
     for first, end in mask_runs(np.isnan(values)):
         stations = np.append(station := d.spans.station[first - 1:end], station[-1] + 1)
-        if hatched[stations].any():
+        borders = hatching[hatching.spans.near(stations[1], stations[-2])[:, None], stations[1:-1]]
+        if len(borders):
             beside = d[d.spans.near(stations[0], stations[-1])[:, None], stations]
             beside = beside[np.isfinite(beside).all(axis=1)]
             course = beside.mean(axis=0) if len(beside) else np.zeros(len(stations))
-            values[first:end] = (course + np.interp(stations, stations[[0, -1]], values[[first - 1, end]] - course[[0, -1]]))[1:-1]
+            led = (course + np.interp(stations, stations[[0, -1]], values[[first - 1, end]] - course[[0, -1]]))[1:-1]
+            if ((led < borders[::2] + LANES.surface_merge) & (led > borders[1::2] - LANES.surface_merge)).any():
+                values[first:end] = led
     return d.like(values, np.nan)
 
 

@@ -5,7 +5,10 @@ import tracemalloc
 import numpy as np
 import pytest
 from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.markings.cross_section.candidates import gather_boundaries
 from lanewright.core.markings.cross_section.evidence import borders_of_hatching, hatched_areas
+from lanewright.core.markings.cross_section.sections import sections_of_lines
+from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.markings.objects.marking_objects import MarkingObjects
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
@@ -68,3 +71,16 @@ def test_outlines_of_the_areas_of_a_road_twice_as_long_take_twice_the_memory():
         tracemalloc.stop()
         assert len(areas) == len(np.arange(20.0, length - 20.0, 40.0)) and all(np.ptp(area[:, 0]) < 15.0 for area in areas)
     assert most[1] < 2.5 * most[0]
+
+
+@pytest.mark.parametrize("offset, leads", [(-0.5, True), (0.1, True), (4.5, False)])
+def test_a_line_leads_over_an_area_that_lies_on_it_and_not_past_one_that_lies_aside(offset, leads):
+    street = Street(vehicle=0.0).paint(3.5, kind="edge").paint(-3.5, kind="edge")
+    for ends in ((5.0, 46.0), (74.0, 115.0)):
+        street.paint(0.0, *ends, kind="centre", line=9)
+    lines = sections_of_lines(PaintedLines.from_features(street.lines, street.frame))[0]
+    markings = painted(street, [(s, s + 0.5, offset, offset + 1.0, "hatch") for s in np.arange(47.0, 73.0, 1.5)])
+    found = gather_boundaries(lines, hatching=borders_of_hatching(markings, street.frame, 0, lines.s)).d
+    gap = (lines.s > 48.0) & (lines.s < 72.0)
+    centre, = (row for row in range(3) if abs(np.nanmedian(found[row, :])) < 0.1)
+    assert np.isfinite(found[centre, :][gap]).all() == leads
