@@ -297,20 +297,24 @@ def _filled(values):
 
 
 def _followed(parts_of_lane, parts, first):
-    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one, the nearest first."""
-    pairs = []
+    """{part: lane} of the parts that go on as a lane, a list of parts, which ends right before them, one to one.
+
+    Where another lane opens on one side, the border on the other side stays; one that divides evenly goes on as neither.
+    """
+    steps = np.full((len(parts), len(parts_of_lane)), np.inf)   # m, of both borders
     for k, part in enumerate(parts):
         for j, lane in enumerate(parts_of_lane):
             track = lane[-1]
-            step = abs(part.d[0] - track.d[-1])
+            aside, wider = part.d[0] - track.d[-1], (part.width[0] - track.width[-1]) / 2
+            of_borders = np.abs([aside + wider, aside - wider])
             if track.last == first - 1 and track.direction == part.direction \
-                    and step < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
-                pairs.append((step, k, j))
-    follows, used = {}, set()
-    for _, k, j in sorted(pairs):
-        if k not in follows and j not in used:
+                    and of_borders.min() < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
+                steps[k, j] = of_borders.sum()
+    follows = {}
+    for k, j in np.argwhere(np.isfinite(steps)).tolist():
+        others = np.append(np.delete(steps[k], j), np.delete(steps[:, j], k))
+        if steps[k, j] + SAME_LANE < others.min(initial=np.inf):
             follows[k] = j
-            used.add(j)
     return follows
 
 

@@ -152,7 +152,7 @@ class Keep(Executor):
         if changed := [name for name in now if before.get(name) != now[name]]:
             write_plain(path, now)
         if before and changed:
-            progress.info(f"This survey has changed since an earlier run, and with it {', '.join(changed)}. All of {what} is made anew.")
+            progress.info(f"This survey has changed since an earlier run, and with it {', '.join(changed)}. What depends on that is made anew.")
         self._base = *self._base[:2], digest(now)
 
     def made(self, files: Any, survey: Any, make: Callable[[Progress], Any], progress: Progress) -> Path:

@@ -80,7 +80,7 @@ def _survey_of_run(executor, read, progress):
     facts = {name: getattr(survey, name) for name in SHIPPED if name != "counts"}
     executor.stand_on("what follows", {
         "the lines of the roads": facts.pop("frame"), "the height of the trajectory above the road": facts.pop("sensor_height"),
-        "by how much the passes were moved": facts.pop("moves"), "its scanners or its density": (facts, survey.store.section_length)}, progress)
+        "the displacements of the passes": facts.pop("moves"), "its scanners or its density": (facts, survey.store.section_length)}, progress)
     return survey
 
 

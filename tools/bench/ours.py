@@ -93,10 +93,10 @@ def storing(size):
             pass
 
         def ranges(self, files, size):
-            return ((number, k, len(block)) for number, file in enumerate(files) for k, block in enumerate(decoded[file.path]))
+            return ((number, k * size, len(block)) for number, file in enumerate(files) for k, block in enumerate(decoded[file.path]))
 
-        def points(self, file, number, count, size):
-            return (decoded[file.path][number],)
+        def points(self, file, first, count, size):
+            return (decoded[file.path][first // size],)
 
     reading.ParallelCloudReader = Decoded
     threads_alone()

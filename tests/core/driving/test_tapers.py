@@ -49,6 +49,23 @@ def test_a_lane_that_opens_is_driven_from_where_it_is_as_wide_as_farther_on(open
     assert other.min() == pytest.approx(96.0, abs=1.5) and other.max() == pytest.approx(195.0, abs=1.0)
 
 
+@pytest.mark.parametrize("opens", [True, False])
+def test_a_lane_is_one_lane_along_the_border_that_it_keeps_where_a_turning_lane_opens_on_its_other_side(opens):
+    def station(s):
+        return s if opens else LENGTH - s
+
+    def share(s, first, length):
+        return np.clip((station(s) - first) / length, 0.0, 1.0)
+
+    street = Street(length=LENGTH, vehicle=-1.8).paint(-3.6, kind="edge").paint(lambda s: 4.0 + 2.2 * share(s, 60.0, 40.0), kind="edge")
+    for line, *ends in ((lambda s: 1.6 * share(s, 60.0, 40.0), 5.0, 100.0), (lambda s: 1.6 + 0.6 * share(s, 100.0, 15.0), 100.0, 195.0)):
+        street.paint(line, *sorted(map(station, ends)), kind="centre", line=50)
+    lines = street.paint(-0.8, *sorted(map(station, (100.0, 195.0))), pattern="dashed").lanes()[0]
+    lines = [(line, row) for line, row in lines if row["direction"] == 1]
+    length = {lane: sum(line.length for line, row in lines if row["lane"] == lane) for lane in {row["lane"] for _, row in lines}}
+    assert max(length.values()) == pytest.approx(190.0, abs=1.0)
+
+
 def test_a_lane_keeps_its_width_where_it_was_taken_to_reach_over_the_beginning_of_the_one_that_opens():
     count = 200
     widening = np.clip((np.arange(count) - 60) / 15.0, 0.0, 2.0) * (np.arange(count) < 88)
