@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -16,7 +17,7 @@ from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import RoadEstimate, lane_spans
 from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, lane_places
-from ..markings.cross_section.weights import BARE, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
+from ..markings.cross_section.weights import BARE, DASHED, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import ALIGNMENT, TRACKS
@@ -201,42 +202,50 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     of = np.repeat(np.arange(len(spans)), [len(values) for values in left])
     number, beside = np.array([span.count for span in spans]), np.array([span.beside for span in spans])
     places = lane_places(np.concatenate(left), np.concatenate(right), *np.array(made_of).T[:, of], number[of], lane_width, beside[of])
-    bounds = np.flatnonzero(np.diff(of)) + 1
+    bounds, parts = np.flatnonzero(np.diff(of)) + 1, []
     for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
         part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
         bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
         # one lane has all the room between two borders, and beside an island
-        if bare.any() and (span.count > 1 or not (apart or bare.all() or beside_island(*drawn))):
-            room, rest = np.maximum(part.width - lane_width, 0.0), estimate.weights.left_over_beside
-            # lanes that share a strip share it evenly or are as unlike as lanes of a road are
-            anywhere = (span.count * room) ** 2 / 12
-            alone = span.count == 1
-            part = _where_driven(part, boundaries.s, estimate, room, [0.0 * anywhere, anywhere] if alone else [
-                anywhere, anywhere + estimate.weights.width_sigma**2], rest[0][2] / rest[1][2] if alone else 1.0)
+        shared = span.count > 1 and (bare.any() or drawn == [DASHED, DASHED])
+        if shared or span.count == 1 and bare.any() and not (apart or bare.all() or beside_island(*drawn)):
+            part = _where_driven(part, boundaries.s, estimate, np.maximum(part.width - lane_width, 0.0), span.count, bare.any())
         elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
             drives, passes = _drives(part.stations, boundaries.s, estimate, (1, 0, -1))
             drives = drives[passes < estimate.evidence.own]
             part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
-        yield span.interval, part
+        parts.append((span, part))
+    for _, strip in groupby(parts, lambda one: (one[0].interval, one[0].left, one[0].right)):
+        yield from _shared(list(strip), estimate.weights.most_in_doubt)
 
 
-def _where_driven(part, s, estimate, room, variances, full):
+def _shared(strip, most):
+    """(interval, LaneTrack) of the lanes of a strip: where one is off its share of it, those that nobody drove have a confidence of `most` at most."""
+    uneven = len(strip) > 1 and np.any([part.offset for _, part in strip], axis=0)
+    for span, part in strip:
+        yield span.interval, replace(part, confidence=np.where(uneven & ~part.offset, np.minimum(part.confidence, most), part.confidence))
+
+
+def _where_driven(part, s, estimate, room, number, to_bare):
     """The LaneTrack of a lane moved from its share of the strip that it lies in to where it was driven.
 
-    A lane is as wide as its share, or of the usual width and anywhere in the strip. Vehicles keep to the middle with some scatter; where one lane may
-    have all of the strip, they rarely give way to something and show nothing. All these are normal errors about the middle, so it is moved as far as
-    the drive is surer. A lane off the middle of which the drive lies is as doubtful as one with a second reading.
+    A lane is as wide as its share, or of the usual width and anywhere in the strip, which it shares with others evenly or as unlike as lanes of a
+    road are; between two dashed lines they share it evenly but where a median without paint lies between them. Vehicles keep to the middle with some
+    scatter; where one lane may have all of the strip, they rarely give way to something and show nothing. All these are normal errors about the
+    middle, so it is moved as far as the drive is surer. A lane off the middle of which the drive lies is as doubtful as one with a second reading.
 
-    room : (N,) m that its share is wider than usual; variances : m², of the place of the lane in both readings, (N,) each
-    full : by how many times more probable it is that one lane has all of the strip; 1 where several share it
+    room : (N,) m that its share is wider than usual; number : of lanes in the strip; to_bare : whether a border of the strip is not painted
     """
     weights, (beside, count) = estimate.weights, _driven_beside(part, s, estimate)
+    anywhere, (whole, gutter, *_) = (number * room) ** 2 / 12, weights.left_over_beside
+    unlike, even = (weights.width_sigma**2, 1.0) if number > 1 and to_bare else (0.0, whole[2] / gutter[2] if to_bare else np.exp(weights.bare[EDGE_LINE]))
+    variances = np.stack([anywhere if unlike else 0.0 * anywhere, anywhere + unlike])   # m², of the place of the lane in both readings
     variance = variances + weights.track_sigma**2 / np.maximum(count, 1)
-    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[full], [1.0]])
-    nothing = (full > 1) * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
-    share, unlike = np.where(count > 0, np.stack([(probable * variances / variance).sum(axis=0), nothing]) / (probable.sum(axis=0) + nothing), 0.0)
-    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if full > 1 else share > 0.5,
-                   confidence=part.confidence - unlike * np.maximum(part.confidence - weights.most_in_doubt, 0.0))
+    probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[even], [1.0]])
+    nothing = (number == 1) * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
+    share, doubt = np.where(count > 0, np.stack([(probable * variances / variance).sum(axis=0), nothing]) / (probable.sum(axis=0) + nothing), 0.0)
+    return replace(part, d=part.d + share * beside, width=part.width - share * room, offset=part.offset if number == 1 else share > 0.5,
+                   confidence=part.confidence - doubt * np.maximum(part.confidence - weights.most_in_doubt, 0.0))
 
 
 def _driven_beside(part, s, estimate):

@@ -147,3 +147,17 @@ def test_on_an_estimated_drive_lanes_lead_on_the_side_that_is_usual_and_may_lead
     found = readings(street)
     assert {offset: row["direction"] for offset, row in found.items()} == {-1.75: 1, 1.75: -1}
     assert all(row["confidence"] <= 0.6 and [lane[2] for lane in other_lanes(row, -1.75)] == [-row["direction"]] for row in found.values())
+
+
+@pytest.mark.parametrize("median", [2.0, 3.0])
+def test_a_median_without_paint_between_lane_lines_leaves_driven_lanes_where_they_were_driven_and_others_in_doubt(median):
+    inner, half = median / 2 + 1.75, median / 2 + 7.0
+    for again in ((), (inner,)):
+        street = Street(vehicle=-inner, again=again)
+        for side in (1, -1):
+            street.paint(side * (median / 2 + 3.5), pattern="dashed")
+        lanes = {round(float(np.median(street.offsets(line))), 3): row for line, row in street.lanes(edges=curbs(street, half, -half))[0]}
+        for offset, row in lanes.items():
+            right = min(abs(abs(offset) - place) for place in (inner, inner + 3.5)) < 0.15
+            assert right or row["confidence"] <= 0.6
+        assert min(abs(offset + inner) for offset in lanes) < 0.15
