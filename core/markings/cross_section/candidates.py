@@ -115,7 +115,10 @@ def _over_areas(d, hatching):
 
 
 def _bare_borders(d):
-    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside it or on the road."""
+    """Where lanes beside lines may end on bare asphalt, as there is too much room up to the next line; as wide as others beside it or on the road.
+
+    They tell it in whole centimetres: a line that moves a little somewhere on a long road moves no border elsewhere.
+    """
     row, station = d.spans.owner, d.spans.station
     order = np.lexsort((-d.values, station))
     order = order[np.isfinite(d.values[order])]
@@ -123,7 +126,7 @@ def _bare_borders(d):
     room = -np.diff(d.values[pairs], axis=0)[0]
     lane = (room >= NEUTRAL.narrowest_lane) & (room <= NEUTRAL.widest_lane)
     count, total = (np.bincount(row[pairs[:, lane]].ravel(), np.tile(values, 2), len(d)) for values in (np.ones(lane.sum()), room[lane]))
-    width = np.where(count > 0, total / np.maximum(count, 1), total.sum() / count.sum() if lane.any() else np.nan)[row]
+    width = np.round(np.where(count > 0, total / np.maximum(count, 1), np.median(room[lane]) if lane.any() else np.nan), 2)[row]
     borders = []
     for beside, sign in zip(pairs, (-1, 1)):
         usual_there = width[beside]

@@ -315,7 +315,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     taken : second readings that an analyst took
 
     Returns PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one
-    `line` number. Every piece is drawn on the line's one curve.
+    `line` number, between which there is only what leads over a hatched area. Every piece is drawn on the line's one curve.
 
     Raises RoadExtractionError if the points were not clustered.
     """

@@ -19,7 +19,7 @@ from lanewright.core.markings.cross_section.candidates import boundary_candidate
 from lanewright.core.markings.cross_section.estimate import sections_of_stretch
 from lanewright.core.markings.cross_section.evidence import driven_offsets, evidence_of
 from lanewright.core.markings.cross_section.sections import sections_of_lines
-from lanewright.core.markings.cross_section.weights import EstimateWeights
+from lanewright.core.markings.cross_section.weights import BARE, EstimateWeights
 from lanewright.core.markings.lines.painted_lines import PaintedLines
 from lanewright.core.road.edges.road_edges import RoadEdges
 from lined_streets import EAST, HEIGHT, NORTH, Street
@@ -105,6 +105,20 @@ def test_a_correction_leaves_the_cross_sections_of_other_stretches_known(monkeyp
         lengths.append(sum(looked_at))
         looked_at.clear()
     assert lengths[0] > 1000.0 > max(lengths[1:])
+
+
+def test_a_line_that_is_corrected_moves_no_border_on_bare_asphalt_two_kilometres_before():
+    def bare(moved):
+        made = Street(length=3000.0, vehicle=0.0).paint(5.0, 5.0, 400.0, kind="edge").paint(-5.0, 5.0, 400.0, kind="edge")
+        made.paint(0.0, 2000.0, 2990.0).paint(3.5, 2000.0, 2990.0, kind="edge")
+        made.paint(lambda s: -3.5 - moved * ((s > 2500.0) & (s < 2600.0)), 2000.0, 2990.0, kind="edge")
+        lines = sections_of_lines(PaintedLines.from_features(made.lines, made.frame))[0]
+        found = gather_boundaries(lines)
+        return np.concatenate([found.d[row, :][(lines.s > 100.0) & (lines.s < 300.0)] for row in np.flatnonzero(found.made_of == BARE).tolist()])
+
+    as_measured = bare(0.0)
+    assert np.unique(np.round(as_measured[np.isfinite(as_measured)], 3)).tolist() == [-1.5, 1.5]
+    np.testing.assert_array_equal(bare(-0.3), as_measured)
 
 
 def test_tables_hold_the_stations_at_which_a_line_is():
