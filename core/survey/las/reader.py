@@ -61,12 +61,12 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     """Open a LAS, LAZ or COPC file with laspy: a LasReader whose header has scales, offsets and bounds in metres.
 
     layers : names of the layers of a LAZ 1.4 file that are decoded beside x, y and the return numbers ("z", "intensity" ...); all by default
-    known : the file's header, where it was read and checked for damage before
+    known : the file's header, where it was read and its points were counted before
     units : of its coordinates, where it does not state them by its CRS
 
     Raises RoadExtractionError if the file is missing, is not a LAS or LAZ file, is damaged, or cannot be read.
     """
-    reader = _open(path, _mended(path) if known is None else mend(path).with_count(known.count), layers)
+    reader = _open(path, _mended(path) if known is None else _undamaged(path).with_count(known.count), layers)
     _to_metres(reader.header, _stated_units(reader.header, units) if known is None else known.units)
     return reader
 
@@ -91,7 +91,12 @@ def _to_metres(header, units):
 
 
 def _mended(path):
-    """What is read in place of some bytes of a file, which is checked for damage; raises as `open_cloud`."""
+    """What is read in place of some bytes of a file, whose points are counted; raises as `open_cloud`."""
+    return with_points_of_chunks(path, _undamaged(path))
+
+
+def _undamaged(path):
+    """The same of a file that is checked for damage; the decoder ends the program where lengths are wrong."""
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
@@ -100,7 +105,7 @@ def _mended(path):
     mended = mend(path)
     if damage := find_damage(path, mended):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")
-    return with_points_of_chunks(path, mended)
+    return mended
 
 
 def _open(path, mended, layers):

@@ -1,5 +1,6 @@
 """Damaged lengths in a LAS or LAZ header are told before the decoder believes them and ends the program."""
 
+import os
 import struct
 
 import laspy
@@ -52,6 +53,13 @@ def test_a_file_that_goes_while_its_survey_is_read_is_named(cloud):
     header = read_header(cloud)
     cloud.unlink()
     with pytest.raises(RoadExtractionError, match=f"{cloud.name} cannot be read any more"):
+        list(ParallelCloudReader().times(header))
+
+
+def test_a_file_that_is_cut_off_while_its_survey_is_read_is_refused_in_one_sentence(cloud):
+    header = read_header(cloud)
+    os.truncate(cloud, cloud.stat().st_size // 2)
+    with pytest.raises(RoadExtractionError, match=f"{cloud.name} is (damaged or )?cut off"):
         list(ParallelCloudReader().times(header))
 
 
