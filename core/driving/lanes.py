@@ -220,7 +220,7 @@ def _parts(boundaries, estimate, lane_width, line_distance):
 
 
 def _shared(strip, most):
-    """(interval, LaneTrack) of the lanes of a strip: where one is off its share of it, those that nobody drove have a confidence of `most` at most."""
+    """(interval, LaneTrack) of the lanes of a strip. Where one lies off its share, those that nobody drove have a confidence of `most` at most."""
     uneven = len(strip) > 1 and np.any([part.offset for _, part in strip], axis=0)
     for span, part in strip:
         yield span.interval, replace(part, confidence=np.where(uneven & ~part.offset, np.minimum(part.confidence, most), part.confidence))
@@ -238,8 +238,10 @@ def _where_driven(part, s, estimate, room, number, to_bare):
     """
     weights, (beside, count) = estimate.weights, _driven_beside(part, s, estimate)
     anywhere, (whole, gutter, *_) = (number * room) ** 2 / 12, weights.left_over_beside
-    unlike, even = (weights.width_sigma**2, 1.0) if number > 1 and to_bare else (0.0, whole[2] / gutter[2] if to_bare else np.exp(weights.bare[EDGE_LINE]))
-    variances = np.stack([anywhere if unlike else 0.0 * anywhere, anywhere + unlike])   # m², of the place of the lane in both readings
+    if number > 1 and to_bare:
+        even, variances = 1.0, np.stack([anywhere, anywhere + weights.width_sigma**2])   # m², of the place of the lane in both readings
+    else:
+        even, variances = whole[2] / gutter[2] if to_bare else np.exp(weights.bare[EDGE_LINE]), np.stack([0.0 * anywhere, anywhere])
     variance = variances + weights.track_sigma**2 / np.maximum(count, 1)
     probable = np.exp(-0.5 * beside**2 / variance) / np.sqrt(variance) * np.array([[even], [1.0]])
     nothing = (number == 1) * weights.odd_width * np.exp(-0.5 * (beside / weights.driven_sigma) ** 2) / weights.driven_sigma
