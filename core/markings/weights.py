@@ -326,6 +326,7 @@ class EVIDENCE:
     carriageway_distance: float = 40.0   # m between the tracks on two carriageways of one road at most
     along: float = 0.3   # m across per m along, up to which a pass of another road was driven along this one
     own_road: float = 6.0   # m: what runs nearer is on this road
+    median: float = 1.2   # m without asphalt that part two carriageways: 4 feet, the least width of a median (AASHTO Green Book 4.11)
     pass_spacing: int = 20   # stations, between the places of a pass at most
     sections_alike: int = 3   # sections of points whose median spacing is taken: one in which the road begins or ends holds fewer points
     stop_reach: float = 5.0   # m before and after a stop line where its lanes are still its lanes

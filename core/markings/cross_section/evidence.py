@@ -188,6 +188,19 @@ def _divided(candidates, offsets, directions, of_road):
     return (between & (np.abs(oncoming) > EVIDENCE.own_road)).any(axis=(0, 2)) & (len(set(directions[:of_road].tolist())) == 1)
 
 
+def beside_median(evidence: Evidence, of_road: int) -> np.ndarray:
+    """(I,) bool, whether another road was driven the other way beside this one, and the asphalt ends before the middle between both drives.
+
+    evidence : its asphalt measured by road points, each of which is of the road driven nearer; of_road : how many of its passes are of this road
+    """
+    ways, middles = evidence.directions[:of_road], (np.arange(BINS) + 0.5) * BIN - FAR
+    oncoming = evidence.driven[of_road:][~np.isin(evidence.directions[of_road:], ways)][..., None]
+    with np.errstate(invalid="ignore"):   # NaN where it was not driven
+        between = (middles * np.sign(oncoming) > 0) & (np.abs(middles) < np.abs(oncoming) / 2)
+        empty = (between & (np.asarray(evidence.asphalt) < 0.5)).sum(axis=2) * BIN
+        return ((empty > EVIDENCE.median) & (np.abs(oncoming[..., 0]) > EVIDENCE.own_road)).any(axis=0) & (len(set(ways.tolist())) == 1)
+
+
 def _of_interval(c, s, arrows):
     """Arrows on the road with the interval in place of the station, as far from the boundaries beside them as they lie where these are on average."""
     if arrows is None:

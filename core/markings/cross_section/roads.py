@@ -23,6 +23,7 @@ from .beside import lanes_beside
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimates_of_roads
 from .evidence import (
+    beside_median,
     between_ends,
     borders_of_hatching,
     driven_offsets,
@@ -164,7 +165,8 @@ def _evidence_of_road(of_road, number, frame, edges, points, markings, arrows, d
     candidates = boundary_candidates(boundaries, weights)
     seen = [np.concatenate(parts) for parts in zip(driven, offsets_of_others(frame, number, s))]
     evidence = evidence_of(candidates, s, *seen, covered, hatched, arrows, markings, number, len(driven[1]), bare)
-    return boundaries, candidates, replace(evidence, taken=_taken_on(taken, number, candidates, s))
+    divided = evidence.divided if road_points is None else evidence.divided | beside_median(evidence, len(driven[1]))
+    return boundaries, candidates, replace(evidence, divided=divided, taken=_taken_on(taken, number, candidates, s))
 
 
 def usual_side(frame: RoadFrame) -> str:

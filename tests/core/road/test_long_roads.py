@@ -185,7 +185,6 @@ def test_how_far_out_is_searched_is_what_a_look_at_all_curbs_tells():
     out = limit.outward(at, d)
     np.testing.assert_array_equal(limit.behind(at, d), (out > 0) & (out < end))
     np.testing.assert_array_equal(limit.far_from(at, 7.0), np.all([(at < a - 7.0) | (at > b + 7.0) for a, b in runs], axis=0))
-    for a, b in np.sort(random.uniform(0.0, 2000.0, (200, 2)), axis=1) + [0.0, 1.0]:
 
 
 def test_places_that_become_known_later_are_known_like_the_first():

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import curbed_streets as streets
 import numpy as np
-from lanewright.core.markings.cross_section.evidence import surface_coverage
+import pytest
+from lanewright.core.markings.cross_section.evidence import Evidence, beside_median, surface_coverage
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.survey.store.records import BIN, COORDINATE_SCALE, FAR, STATION_STEP
+from lanewright.core.survey.store.records import BIN, BINS, COORDINATE_SCALE, FAR, STATION_STEP
 from lanewright.core.survey.store.road_points import RoadPoints
 
 STATIONS = 10.0 + STATION_STEP * np.arange(40)   # m: 10 to 29.5
@@ -60,3 +61,14 @@ def test_what_was_seen_when_the_surface_was_extracted_is_what_its_points_show():
         for here, there in zip(sections, points.seen[road]):
             assert here[0] == there[0] and all(np.array_equal(*pair) for pair in zip(here[1:], there[1:]))
         assert len(sections) == len(points.seen[road])
+
+
+@pytest.mark.parametrize("asphalt_to, oncoming, way, divided", [
+    (6.3, 16.5, -1, True), (8.3, 16.5, -1, False), (6.3, 16.5, 1, False), (6.3, -16.5, -1, False), (6.3, np.nan, -1, False), (0.5, 4.0, -1, False)])
+def test_asphalt_that_ends_before_the_middle_to_an_oncoming_drive_makes_one_carriageway_of_two(asphalt_to, oncoming, way, divided):
+    """Each road has the asphalt up to the middle between both drives; a median of grass on one level has no edge that is drawn."""
+    middles = (np.arange(BINS) + 0.5) * BIN - FAR
+    asphalt = ((middles > -9.0) & (middles < asphalt_to)).astype(float)[None]
+    evidence = Evidence(np.array([[0.0], [oncoming]]), np.array([1, way]), asphalt, None, np.empty((0, 3)), np.empty((0, 4)), np.zeros(1, bool),
+                        np.zeros(1, bool), 1)
+    assert beside_median(evidence, 1).tolist() == [divided]
