@@ -182,10 +182,15 @@ def _divided(candidates, offsets, directions, of_road):
     """
     ends = candidates.valid & UNPAINTED[candidates.made_of] & (candidates.made_of != BARE)
     ends &= np.abs(candidates.left) < SurfaceSettings.max_width - NEUTRAL.narrowest_lane
-    oncoming = offsets[of_road:][~np.isin(directions[of_road:], directions[:of_road])][..., None]
+    oncoming = _oncoming(offsets, directions, of_road)
     with np.errstate(invalid="ignore"):   # NaN where it was not driven
-        between = ends & (candidates.left * np.sign(oncoming) > 0) & (np.abs(candidates.left) < np.abs(oncoming))
-    return (between & (np.abs(oncoming) > EVIDENCE.own_road)).any(axis=(0, 2)) & (len(set(directions[:of_road].tolist())) == 1)
+        return (ends & (candidates.left * np.sign(oncoming) > 0) & (np.abs(candidates.left) < np.abs(oncoming))).any(axis=(0, 2))
+
+
+def _oncoming(offsets, directions, of_road):
+    """(P, I, 1) m, offsets of the passes of other roads that were driven the other way than this one; NaN where they drove elsewhere or on it."""
+    other = offsets[of_road:][~np.isin(directions[of_road:], directions[:of_road]) & (len(set(directions[:of_road].tolist())) == 1)]
+    return np.where(np.abs(other) > EVIDENCE.own_road, other, np.nan)[..., None]
 
 
 def beside_median(evidence: Evidence, of_road: int) -> np.ndarray:
@@ -193,12 +198,10 @@ def beside_median(evidence: Evidence, of_road: int) -> np.ndarray:
 
     evidence : its asphalt measured by road points, each of which is of the road driven nearer; of_road : how many of its passes are of this road
     """
-    ways, middles = evidence.directions[:of_road], (np.arange(BINS) + 0.5) * BIN - FAR
-    oncoming = evidence.driven[of_road:][~np.isin(evidence.directions[of_road:], ways)][..., None]
+    oncoming, middles = _oncoming(evidence.driven, evidence.directions, of_road), (np.arange(BINS) + 0.5) * BIN - FAR
     with np.errstate(invalid="ignore"):   # NaN where it was not driven
         between = (middles * np.sign(oncoming) > 0) & (np.abs(middles) < np.abs(oncoming) / 2)
-        empty = (between & (np.asarray(evidence.asphalt) < 0.5)).sum(axis=2) * BIN
-        return ((empty > EVIDENCE.median) & (np.abs(oncoming[..., 0]) > EVIDENCE.own_road)).any(axis=0) & (len(set(ways.tolist())) == 1)
+    return ((between & (np.asarray(evidence.asphalt) < 0.5)).sum(axis=2) * BIN > EVIDENCE.median).any(axis=0)
 
 
 def _of_interval(c, s, arrows):
