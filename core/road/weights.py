@@ -312,7 +312,6 @@ class RETURN:
     level_road: tuple[float, float] = (-1.5, -0.5)   # m across from the curb of the road beside it, where averages show what is no step
     max_layer_height: float = 0.3   # m above or below the curb's end within which its ground lies
     min_half_share: float = 0.5   # of the least height, that the step must rise along either half
-    min_sharp_share: float = 0.4   # of the height that must lie within steep_half_width: a dropped stone is sloped, and drift blurs a long average
     step_share: float = 0.24   # n1 n2 / (n1 + n2)²: share of a step's squared height in the variance that it explains
     bend_sigma: float = 0.1   # 1/m, of the bend of a faint curb
     first_turns: tuple[float, ...] = tuple(np.radians(np.arange(-6.0, 6.1, 1.5)))   # by which a curb may leave the arc so far, at first, and
