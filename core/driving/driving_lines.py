@@ -184,12 +184,12 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
 #
 # What adds up as squares: how well the borders of the lane are placed, and how well the line follows the lane.
 #
-# A painted border is off by a share of the spacing of the points, and by a share of the scatter of its paint about its curve, most of which
-# averages out along the curve. How much these are was found on simulated streets with truth (docs/accuracy.md). On fourteen of them nothing is
-# left, most likely, however many points show a border (errors taken as Student's, with long tails). More is added with the distance to its next
-# paint, where it is bridged. The border of a hatched area is known as well as the outline of its bars. Between two borders the middle takes half of
-# the error of each; where two lanes lie between them with nothing painted in the middle of the road, it takes three quarters of one and one quarter
-# of the other. Beside one border alone it takes all of it, and what the width of lanes is off by.
+# A painted border is found to some millimetres however many points show it, and worse with the spacing of the points; and it is off by a share of the
+# scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
+# (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of a hatched area is known as well as the
+# outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie between them with nothing painted in the
+# middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone it takes all of it, and what the width of
+# lanes is off by.
 #
 # The line is off by most of what the places of its lane lie beside it on average over some metres: the borders show the lane there and the line
 # passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
@@ -227,7 +227,7 @@ def _mean_square_of_borders(track, known, paint, spacing):
     mean = np.where(finite, square, 0.0).sum(axis=0) / np.maximum(finite.sum(axis=0), 1)
     usual = np.median(mean[finite.any(axis=0)]) if finite.any() else SIGMA.usual_scatter**2
     scatter = np.where(finite, square, np.where(finite.any(axis=0), mean, usual))
-    line_error = (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
+    line_error = SIGMA.border_sigma**2 + (SIGMA.spacing_share * spacing) ** 2 + SIGMA.border_share**2 * scatter
     error = np.where(hatched, SIGMA.hatching_sigma**2, line_error + (SIGMA.gap_share * distance) ** 2)
     share = np.where(bounding.sum(axis=0) == 1, np.where(bounding, SIGMA.own_border, SIGMA.far_border), SIGMA.between_borders)
     beside_curb = (track.left >= 0) & (track.right >= 0) & (bounding.sum(axis=0) == 1)

@@ -33,6 +33,9 @@ class SIGMA:
 
     border_share: float = 0.13   # of the RMS distance of a border's paint from its curve, that the border is off by
     usual_scatter: float = 0.010   # m, of paint about its curve, where no border says it
+    # m, of a painted border, however many points show it; fitted on nine simulated surveys and scenes: lines of a street are within one or two
+    # sigma in 73 and 85 % on average there, and so they are on nine others; two of these streets are off by 3 and 5 cm throughout
+    border_sigma: float = 0.005
     spacing_share: float = 0.028   # of the spacing of the points, that a painted border is off by
     usual_spacing: float = 0.03   # m, where there are no points to say it
     gap_share: float = 0.003   # m per m to the next place where a border is painted, or, without borders, where the lane is measured

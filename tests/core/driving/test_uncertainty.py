@@ -8,7 +8,7 @@ from lined_streets import HEIGHT, Street
 from painted_streets import road_points, street
 from shapely.geometry import Polygon
 
-BORDER = 0.028 * 0.03   # m, of a painted border whose paint does not scatter, where nothing says how far apart the points lie
+BORDER = np.hypot(0.005, 0.028 * 0.03)   # m, of a painted border whose paint does not scatter, where nothing says how far apart the points lie
 
 
 def sigmas(lines, **wanted):
@@ -29,10 +29,10 @@ def two_lanes(wander=0.0, gap=None, **street):
     return found
 
 
-def test_between_clean_lines_it_is_a_millimetre_and_lines_that_wander_make_it_worse():
+def test_between_clean_lines_it_is_some_millimetres_and_lines_that_wander_make_it_worse():
     clean, wavy = (sigmas(two_lanes(wander).lanes()[0], status="measured") for wander in (0.0, 0.04))
     assert len(clean) == len(wavy) == 2
-    assert 0.0005 < max(clean) < 0.002 and min(wavy) > 1.5 * max(clean)
+    assert 0.002 < max(clean) < 0.005 and min(wavy) > 1.5 * max(clean)
 
 
 def test_a_bridge_is_worse_than_what_it_joins():
@@ -93,10 +93,10 @@ def test_the_farther_the_next_paint_of_a_border_the_less_sure_the_lane():
 
 
 def test_where_the_line_leaves_the_places_of_its_lane_for_metres_it_is_as_uncertain_as_that():
-    """Borders that wind by a centimetre are seen to; the lane is one arc all along, and lies beside its places by almost half a centimetre."""
+    """Borders that wind by a centimetre are seen to; the lane is one arc all along, and lies beside its places by half a centimetre and more."""
     street = two_lanes(wander=0.01)
     plain = sigmas(two_lanes().lanes()[0], status="measured")
-    assert min(sigmas(street.lanes()[0], status="measured")) > 0.004 > max(plain)
+    assert min(sigmas(street.lanes()[0], status="measured")) > 0.005 > max(plain)
 
 
 def test_beside_a_hatched_area_without_a_line_it_is_as_sure_as_the_outlines_of_its_bars():
