@@ -71,7 +71,7 @@ def _clouds(folder):
             path = folder / f"seed_{version}_{point_format}.{suffix}"
             las.write(str(path))
             contents.append(path.read_bytes())
-    copc = Path(write_copc(folder / "seed_1.4_6.laz", folder / "seed.copc.laz", in_a_node=20)).read_bytes()
+    copc = Path(write_copc(folder / "seed_1.4_6.laz", folder / "seed.copc.laz", in_a_node=80)).read_bytes()
     named = Path(write_vpc(folder / "all.vpc", ["./a.laz", "b.laz"])).read_bytes()
     return {"LAS": Kind("cloud.las", made["las"], cloud), "LAZ": Kind("cloud.laz", made["laz"], cloud),
             "COPC": Kind("cloud.copc.laz", [copc], cloud),

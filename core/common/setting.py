@@ -12,8 +12,11 @@ Weights = TypeVar("Weights")
 
 
 def table(kind: type[Weights]) -> Weights:
-    """The one frozen object of a class of weights, which has the name of the class."""
-    return dataclass(frozen=True)(kind)()
+    """The one frozen object of a class of weights, which has the name of the class.
+
+    Nobody compares or prints it: what would do so takes longer to make than all else of it, at every start of QGIS and of each worker.
+    """
+    return dataclass(frozen=True, eq=False, repr=False)(kind)()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -74,9 +74,9 @@ class Corrections:
         """Those of one target, in the order of the layer."""
         return [row for row in self.rows if row.target == target]
 
-    def asked(self, target: str) -> list[Correction]:
-        """What is asked for one target, whatever else the layer holds and says: plain values that tell requests apart."""
-        return [replace(row, row=0, note="") for row in self.of(target)]
+    def asked(self, target: str, actions: Sequence[str] = ACTIONS) -> list[Correction]:
+        """What is asked for one target by some actions, whatever else the layer holds and says: plain values that tell requests apart."""
+        return [replace(row, row=0, note="") for row in self.of(target) if row.action in actions]
 
     def taken(self, frame: RoadFrame) -> list[TakenReading]:
         """The second readings of lanes that were taken, for the estimate of lines and lanes."""

@@ -258,20 +258,23 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
                                      executor=executor, depends=settings.clusters)
     executor.forget()
     markings = correct_markings(markings, result.corrections)
-    edges, readings = result.edges.densified(frame), result.corrections.taken(frame)
-    beside = EdgeSections.of(edges)
+    readings = result.corrections.taken(frame)
+    beside, edge_places = stages.follows("beside", partial(_beside, result.edges, frame))
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
                        edges=beside, road_points=result.road_points, taken=readings,
-                       depends=(result.corrections.asked("marking"), readings, settings.lines))
-    edge_places = np.c_[edges.course.x, edges.course.y, edges.course.z]
-    corrected = correct_marking_lines(lines, frame, result.corrections, edge_places)
-    if corrected is not lines:
-        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, beside, result.road_points, clustered,
-                                  taken=readings)
-    markings = named_by_lines(markings, lines)
-    result.markings, result.marking_lines = markings.to_features(frame), lines.to_features(frame)
-    paint = Points(columns_of_roads(clustered.store, clustered.roads()))
-    result.marking_curvature = marking_curvature(paint, result.marking_lines.geometries, frame.origin)
+                       depends=(result.corrections.asked("marking", ["delete"]), readings, settings.lines))
+    drawn = correct_marking_lines(lines, frame, result.corrections, edge_places)
+
+    def named():
+        """Lines and markings with their names, their layers, and the curvature of the paint."""
+        of_lines = lines if drawn is lines else named_by_estimate(drawn, frame, country(settings.lines.country).usual_lane, markings, beside,
+                                                                  result.road_points, clustered, taken=readings)
+        of_markings, layer = named_by_lines(markings, of_lines), of_lines.to_features(frame)
+        paint = Points(columns_of_roads(clustered.store, clustered.roads()))
+        return of_lines, of_markings, layer, of_markings.to_features(frame), marking_curvature(paint, layer.geometries, frame.origin)
+
+    lines, markings, result.marking_lines, result.markings, result.marking_curvature = stages.follows(
+        "named", named, result.corrections.asked("marking"))
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
         markings=markings, edges=beside, road_points=result.road_points, taken=readings, depends=settings.driving)
@@ -284,6 +287,12 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
         result.without_paint = "No paint was found on this road, so there are no marking lines" \
             + (": driving lines lead between its borders." if len(driving) else " and no driving lines.")
         stages.progress.warn(result.without_paint)
+
+
+def _beside(edges, frame):
+    """EdgeSections of road edges, and (V, 3) local places along these."""
+    edges = edges.densified(frame)
+    return EdgeSections.of(edges), np.c_[edges.course.x, edges.course.y, edges.course.z]
 
 
 def _corrected(road_points, frame, settings, asphalt, progress):
@@ -391,3 +400,12 @@ class Stages:
         self.waiting.remove(name)
         self.progress.report(self.done)
         return result
+
+    def follows(self, name: str, function: Callable[[], Any], depends: Any = ()) -> Any:
+        """What follows soon from the results of the stages so far and from plain values that it `depends` on, or what did so in the last run."""
+        if self.kept is None:
+            return function()
+        self._digest = digest((self._digest, name, depends))
+        if not self.kept.known(name, self._digest):
+            self.kept.keep(name, self._digest, function())
+        return self.kept.result(name)

@@ -72,6 +72,7 @@ class CURBS:
     decimation_locks: int = 16   # locks that stretches share while they are decided
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
+    curb_width: float = 1.0   # m across in which the points about a curb are counted: the road before it and the ground behind
     thin_width: float = 2.0   # m across in which points are densest: beside the track
     thin_density: float = 320.0   # points per m² of ground there, below which more of the road is looked at together: whole surveys had 348 and more
     # occlusion
@@ -312,7 +313,6 @@ class RETURN:
     level_road: tuple[float, float] = (-1.5, -0.5)   # m across from the curb of the road beside it, where averages show what is no step
     max_layer_height: float = 0.3   # m above or below the curb's end within which its ground lies
     min_half_share: float = 0.5   # of the least height, that the step must rise along either half
-    min_sharp_share: float = 0.4   # of the height that must lie within steep_half_width: a dropped stone is sloped, and drift blurs a long average
     step_share: float = 0.24   # n1 n2 / (n1 + n2)²: share of a step's squared height in the variance that it explains
     bend_sigma: float = 0.1   # 1/m, of the bend of a faint curb
     first_turns: tuple[float, ...] = tuple(np.radians(np.arange(-6.0, 6.1, 1.5)))   # by which a curb may leave the arc so far, at first, and
@@ -459,7 +459,7 @@ class RETURN:
 class EdgeUncertainty:
     """The shares of an edge's uncertainty.
 
-    foot : m, of a curb's foot, however many points are on it
+    foot : m, of a curb's foot, however many points are on it; the most likely one of a main edge is none
     spacing : m, of the foot by a single laser point; its square falls with N points as N**-points_power
     scatter : of the RMS of residuals of curb points; more than 1, as a line follows errors that go on over metres and shows less of them
     end : m, at the end of a line
@@ -468,11 +468,11 @@ class EdgeUncertainty:
         place by 1.5, 4 and 15 cm over 6, 10 and 15 m (95 %). It is a third of that in the mean of a bridge, for what bends change by has long tails
     """
 
-    foot: float
-    spacing: float
     scatter: float
     end: float
     gap: float
+    foot: float = 0.0
+    spacing: float = 0.0
     bridge: float = 2e-5
 
 
@@ -523,8 +523,8 @@ class EDGE:
     scatter_reach: float = 10.0   # m along the line, either way, over which the scatter of curb points is taken
     points_power: float = 1.3   # more than 1: where points are few, they also lie less regularly on the curb
     end_length: float = 5.0   # m from its end at which the uncertainty of a line's end has fallen to 1/e in square
-    main_edge: EdgeUncertainty = EdgeUncertainty(foot=0.0014, spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
-    curb_return: EdgeUncertainty = EdgeUncertainty(foot=0.0075, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+    main_edge: EdgeUncertainty = EdgeUncertainty(spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
+    curb_return: EdgeUncertainty = EdgeUncertainty(foot=0.0075, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
 @table

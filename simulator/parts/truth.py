@@ -76,7 +76,8 @@ class TruePlaces(NamedTuple):
 
 def densified(outline: np.ndarray) -> np.ndarray:
     """The closed ring of an outline, (n, 2) m, with vertices at least every quarter of a metre."""
-    closed = np.vstack([outline, outline[:1]])
-    sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / VERTEX_STEP))), endpoint=False)[:, None] * (b - a)
-             for a, b in zip(closed[:-1], closed[1:])]
-    return np.vstack([*sides, outline[:1]])
+    sides = np.roll(outline, -1, axis=0) - outline
+    steps = np.maximum(np.ceil(np.hypot(*sides.T) / VERTEX_STEP), 1).astype(int)
+    side = np.repeat(np.arange(len(outline)), steps)
+    share = (np.arange(len(side)) - (np.cumsum(steps) - steps)[side]) * (1 / steps)[side]
+    return np.vstack([outline[side] + share[:, None] * sides[side], outline[:1]])

@@ -107,7 +107,7 @@ class Ground:
         terrain = self.terrain
         rows, columns = (int(np.ceil((count - 1) * terrain.cell / _LOOKUP)) for count in terrain._shape)
         self._shape = rows, columns
-        tree = cKDTree(self._from)
+        tree = cKDTree(self._from, balanced_tree=False, compact_nodes=False)   # for evenly spaced vertices, found sooner
         x = terrain.corner[0] + (np.arange(columns) + 0.5) * _LOOKUP
         self._nearest = np.zeros(rows * columns, dtype=np.int32)
         shapely.prepare(area)

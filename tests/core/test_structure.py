@@ -52,6 +52,12 @@ def tree_of(path):
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@functools.cache
+def nodes_of(path):
+    """All of its nodes, from the outermost inward."""
+    return tuple(ast.walk(tree_of(path)))
+
+
 def name_of(path):
     """`core/road/edges/fit.py` -> ("core", "road", "edges", "fit")."""
     return path.relative_to(ROOT).with_suffix("").parts
@@ -65,7 +71,7 @@ def room_of(name):
 @functools.cache
 def imports_of(path):
     """(import, whether it is for type checkers alone) of every import of a file, also those inside functions."""
-    nodes = list(ast.walk(tree_of(path)))
+    nodes = nodes_of(path)
     typing = {inner for node in nodes if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
               for inner in ast.walk(node)}
     return [(node, node in typing) for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))]
@@ -94,7 +100,7 @@ def test_the_code_is_read_by_the_oldest_python_there_is():
     """Python 3.9, which QGIS brings on macOS, wants parentheses around what is named within an index, and knows no `|` of types but in hints."""
     for path in CODE:
         text = path.read_text(encoding="utf-8")
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(path):
             if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.NamedExpr):
                 before = text.splitlines()[node.slice.lineno - 1][:node.slice.col_offset]
                 assert before.rstrip().endswith("("), f"{path.relative_to(ROOT)}, line {node.slice.lineno}"
@@ -275,7 +281,7 @@ PRONOUNS = {"found", "own", "said", "told"}   # of something that has a name
 
 
 def test_no_pronoun_is_a_name():
-    functions = [(path, node) for path in CODE for node in ast.walk(tree_of(path)) if isinstance(node, (ast.FunctionDef, ast.Lambda))]
+    functions = [(path, node) for path in CODE for node in nodes_of(path) if isinstance(node, (ast.FunctionDef, ast.Lambda))]
     assert not [f"{path.relative_to(ROOT)}, line {node.lineno}" for path, function in functions for node in ast.walk(function)
                 if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in PRONOUNS
                 or isinstance(node, ast.arg) and node.arg in PRONOUNS]

@@ -40,6 +40,17 @@ def lanewright(tmp_path_factory):
     return call
 
 
+@pytest.fixture(scope="module")
+def survey(provider, tmp_path_factory):
+    """Cloud and trajectory of a street, as Processing makes them."""
+    import processing
+
+    folder = tmp_path_factory.mktemp("survey")
+    places = {"POINT_CLOUD": str(folder / "q_s.laz"), "TRAJECTORY": str(folder / "q_drive.gpkg")}
+    processing.run("lanewright:samplesurvey", {**SAMPLE, **places})
+    return places
+
+
 @pytest.mark.slow
 def test_the_package_holds_what_works_without_qgis(lanewright, tmp_path):
     packages = list((lanewright.folder / "venv/lib").glob("python*/site-packages/lanewright"))
@@ -53,7 +64,7 @@ def test_the_package_holds_what_works_without_qgis(lanewright, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_road_map_is_that_of_processing(provider, lanewright, tmp_path):
+def test_a_road_map_is_that_of_processing(survey, lanewright, tmp_path):
     import processing
 
     def outputs(name):
@@ -63,14 +74,13 @@ def test_a_road_map_is_that_of_processing(provider, lanewright, tmp_path):
     def program(algorithm, **values):
         return lanewright(algorithm, *(f"--{name}={value}" for name, value in values.items()), cwd=tmp_path)
 
-    processing.run("lanewright:samplesurvey", {**SAMPLE, "POINT_CLOUD": str(tmp_path / "q_s.laz"), "TRAJECTORY": str(tmp_path / "q_drive.gpkg")})
+    cloud, drive = survey["POINT_CLOUD"], survey["TRAJECTORY"]
     said = program("samplesurvey", **SAMPLE, POINT_CLOUD="l_s.laz", TRAJECTORY="l_drive.gpkg")
-    assert "TRAJECTORY: l_drive.gpkg\n" in said and (tmp_path / "l_s.laz").read_bytes() == (tmp_path / "q_s.laz").read_bytes()
-    assert rows(tmp_path / "l_drive.gpkg", "l_drive") == rows(tmp_path / "q_drive.gpkg", "q_drive")
+    assert "TRAJECTORY: l_drive.gpkg\n" in said and (tmp_path / "l_s.laz").read_bytes() == Path(cloud).read_bytes()
+    assert rows(tmp_path / "l_drive.gpkg", "l_drive") == rows(drive, "q_drive")
 
-    survey = {"POINT_CLOUDS": str(tmp_path / "q_s.laz"), "TRAJECTORY": str(tmp_path / "q_drive.gpkg")}
-    processing.run("lanewright:roadmap", {**survey, "POINT_CLOUDS": [survey["POINT_CLOUDS"]], **outputs("q")})
-    program("roadmap", **survey, **outputs("l"))
+    processing.run("lanewright:roadmap", {"POINT_CLOUDS": [cloud], "TRAJECTORY": drive, **outputs("q")})
+    program("roadmap", POINT_CLOUDS=cloud, TRAJECTORY=drive, **outputs("l"))
     for layer in LAYERS:
         found, expected = (rows(tmp_path / f"{name}.gpkg", layer.lower()) for name in "lq")
         assert found == expected, layer
@@ -82,15 +92,14 @@ def test_a_road_map_is_that_of_processing(provider, lanewright, tmp_path):
 
 
 @pytest.mark.slow
-def test_scanlines_keep_their_intensity_between_two_steps(provider, lanewright, tmp_path):
+def test_scanlines_keep_their_intensity_between_two_steps(survey, lanewright, tmp_path):
     import processing
 
-    processing.run("lanewright:samplesurvey", {**SAMPLE, "POINT_CLOUD": str(tmp_path / "s.laz"), "TRAJECTORY": str(tmp_path / "d.gpkg")})
-    processing.run("lanewright:normalizedscanlines", {"POINT_CLOUDS": [str(tmp_path / "s.laz")], "TRAJECTORY": str(tmp_path / "d.gpkg"),
-                                                      "SCANLINES": str(tmp_path / "q.gpkg")})
-    lanewright("normalizedscanlines", "--POINT_CLOUDS", "s.laz", "--TRAJECTORY=d.gpkg", "--SCANLINES=l.gpkg", cwd=tmp_path)
+    cloud, drive = survey["POINT_CLOUD"], survey["TRAJECTORY"]
+    processing.run("lanewright:normalizedscanlines", {"POINT_CLOUDS": [cloud], "TRAJECTORY": drive, "SCANLINES": str(tmp_path / "q.gpkg")})
+    lanewright("normalizedscanlines", "--POINT_CLOUDS", cloud, f"--TRAJECTORY={drive}", "--SCANLINES=l.gpkg", cwd=tmp_path)
     assert rows(tmp_path / "l.gpkg", "l") == rows(tmp_path / "q.gpkg", "q")
-    lanewright("boundariesfromscanlines", "--SCANLINES=l.gpkg", "--TRAJECTORY=d.gpkg", "--BOUNDARIES=b.gpkg", cwd=tmp_path)
+    lanewright("boundariesfromscanlines", "--SCANLINES=l.gpkg", f"--TRAJECTORY={drive}", "--BOUNDARIES=b.gpkg", cwd=tmp_path)
     assert rows(tmp_path / "b.gpkg", "b")[2]
 
 

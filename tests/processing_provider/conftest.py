@@ -1,5 +1,4 @@
-"""Makes the writer of COPC files importable here, and sample surveys through Processing."""
-
+"""Sample surveys through Processing, and the road map of one."""
 
 import pytest
 
@@ -31,7 +30,8 @@ def street_map(street, made_once):
 
     def results(folder):
         return {output: str(folder / name) for output, name in (
-            ("ROAD_EDGES", "edges.gpkg"), ("MARKINGS", "markings.gpkg"), ("ROAD_POINTS", "road.laz"), ("INTENSITY_IMAGE", "image.tif"))}
+            ("ROAD_EDGES", "edges.gpkg"), ("ROAD_SURFACE", "surface.gpkg"), ("MARKINGS", "markings.gpkg"), ("ROAD_POINTS", "road.laz"),
+            ("INTENSITY_IMAGE", "image.tif"))}
 
     return results(made_once("street_map", lambda folder: processing.run("lanewright:roadmap", {
         "POINT_CLOUDS": [street["POINT_CLOUD"]], "TRAJECTORY": street["TRAJECTORY"], **results(folder)})))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from lanewright.core.road.detect_boundaries import BoundarySettings
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 from lanewright.products.inventory.borders import BorderLayers
 from lanewright.products.inventory.roadside.find import find_roadside, roadside_to_features
@@ -75,7 +76,7 @@ def test_what_stands_beside_another_street_has_no_truth():
 def test_roadside_finds_90_percent_and_95_percent_of_it_are_right(outskirts, tmp_path):
     outskirts.write_cloud(tmp_path / "cloud.las")
     found = open_survey([tmp_path / "cloud.las"], outskirts.trajectory, SurveySettings(above_road=8.0))
-    lines, _ = roadside_to_features(find_roadside(found, BorderLayers(edges=drawn_boundaries(found))))
+    lines, _ = roadside_to_features(find_roadside(found, BorderLayers(edges=drawn_boundaries(found, BoundarySettings("profiles")))))
     found.store.close()
     sums = np.zeros(4)
     for kind in LABEL_OF:

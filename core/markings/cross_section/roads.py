@@ -295,11 +295,20 @@ def driven_against(arrows: np.ndarray, s: np.ndarray, driven: np.ndarray, direct
 
 def stems(shapes: np.ndarray) -> np.ndarray:
     """(2, A) shares of the length of polygons in (s, d) that are a single stroke: from the first station on, and from the last one back."""
-    first, low, last, high = shapely.bounds(shapes).T
-    stations = first[:, None] + (last - first)[:, None] * (np.arange(SLICES) + 0.5) / SLICES
-    ends = np.stack([np.stack([stations, np.broadcast_to(side[:, None], stations.shape)], axis=-1) for side in (low - 1, high + 1)], axis=-2)
-    slices = shapely.intersection(shapely.linestrings(ends), shapes[:, None])
-    _, right, _, left = np.moveaxis(shapely.bounds(slices), -1, 0)
-    broad = np.nan_to_num(left - right) > ROADS.shaft_breadth
+    first, _, last, _ = shapely.bounds(shapes).T
+    parts, shape_of = shapely.get_parts(shapes, return_index=True)
+    rings, part_of = shapely.get_rings(parts, return_index=True)
+    places, ring = shapely.get_coordinates(rings, return_index=True)
+    shape = shape_of[part_of[ring]]
+    # slices lie at whole numbers along a shape
+    along = (places[:, 0] - first[shape]) * (SLICES / (last - first)[shape]) - 0.5
+    edge = np.flatnonzero(ring[1:] == ring[:-1])
+    begin, end = np.ceil([np.minimum(along[edge], along[edge + 1]), np.maximum(along[edge], along[edge + 1])]).astype(int)
+    edge, cut = np.repeat(edge, end - begin), np.arange((end - begin).sum()) + np.repeat(begin - np.cumsum(end - begin) + end - begin, end - begin)
+    across = places[edge, 1] + np.diff(places[:, 1])[edge] * (cut - along[edge]) / np.diff(along)[edge]
+    left, right = np.full((len(shapes), SLICES), -np.inf), np.full((len(shapes), SLICES), np.inf)
+    np.maximum.at(left, (shape[edge], cut), across)
+    np.minimum.at(right, (shape[edge], cut), across)
+    broad = left - right > ROADS.shaft_breadth
     bare = np.stack([np.argmax(broad, axis=1), np.argmax(broad[:, ::-1], axis=1)]) / SLICES
     return np.where(broad.any(axis=1), bare, 0.0)

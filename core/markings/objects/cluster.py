@@ -154,9 +154,9 @@ def _apart(records: Columns, labels: np.ndarray, striped: tuple[list[Stripe], np
     clusters, bounds = records.take(order), list(zip(starts[:-1].tolist(), starts[1:].tolist()))
     count = np.bincount(joins, minlength=1)
     unjoined = {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
-    columns = _columns_at(records, MEASURED, order)
-    shapes = [unjoined[label] if label in unjoined else measure(*(column[slice(*ends)] for column in columns))
-              for label, ends in zip(labels.tolist(), bounds)]
+    joined = [order[slice(*ends)] for label, ends in zip(labels.tolist(), bounds) if label not in unjoined]
+    measured = iter((yield asked(pieces_of_clusters, partial(_columns_at, records, MEASURED), joined, 1.0, [False] * len(joined))))
+    shapes = [unjoined[label] if label in unjoined else next(measured)[1][0] for label in labels.tolist()]
     return _stripe_markings(stripes, members, of_stripes), _Pieces(records, clusters, order, bounds, shapes)
 
 
@@ -172,7 +172,7 @@ def _divided(paint, labels, records, stripes):
     ends = np.r_[starts, len(order) + np.cumsum([0, *map(len, stripes)])]
     clusters = [np.arange(*pair) for pair in zip(ends, ends[1:])]
     columns = tuple(map(np.append, columns, _columns_at(records, MEASURED, np.concatenate([np.empty(0, np.intp), *stripes]))))
-    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 1.0, compound)
+    divided = yield asked(pieces_of_clusters, partial(_at, columns), clusters, 0.7, compound)
     labels, following = labels.copy(), int(labels.max(initial=-1)) + 1
     alone, of_parts = [], []
     for rows, (parts, shapes) in zip(clusters[:len(starts)], divided):

@@ -198,7 +198,7 @@ def _poses(cells: _PaintImage, figure: _Figure) -> np.ndarray:
 def _axes(turn):
     """(2, P) the ways to the right of figures and up."""
     along, across = np.cos(turn), np.sin(turn)
-    return np.stack([along, across]), np.stack([-across, along])
+    return np.array([along, across]), np.array([-across, along])
 
 
 def _allowed(poses, figure, symbol):
@@ -216,8 +216,8 @@ def _seen(cells, figure, poses):
     unit = figure.size[1] / FIGURES.figure_height
     across, down = right * width * unit, -up * height * unit
     rows, columns = figure.image.shape
-    corner = np.stack([x, y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
-    to_cells = np.stack([across, down, corner - cells.corner[:, None]], axis=1) / cells.size
+    corner = np.array([x, y]) - across * (columns - 1) / 2 - down * (rows - 1) / 2
+    to_cells = np.array([across, down, corner - cells.corner[:, None]]).swapaxes(0, 1) / cells.size
     to_cells[:, 2] -= 0.5
     images = np.empty((len(poses), rows, columns), np.float32)
     # OpenCV has the second axis first

@@ -7,7 +7,8 @@ counts only where it continues from the end of a sure curb, in direction and in 
 From a little before such an end, arcs of the next RETURN.led_length metres are compared: the curb's own course, and some that turn and bend a little
 more or less. Across each of them the ground is averaged, and that one is taken whose averages two levels and the step between them explain best. The
 step must stand CURBS.significant_sigmas above what the same averages show on the road beside it, where nothing rises: their noise, and whatever part
-of the errors does not average out. It must do so along both halves of the arc. Then the next arc begins RETURN.led_step farther on.
+of the errors does not average out. By as many it must explain them better than ground that only bends, as in a gutter. It must rise along both halves
+of the arc. Then the next arc begins RETURN.led_step farther on.
 """
 
 from __future__ import annotations
@@ -100,8 +101,7 @@ def _best_average(arc, points, turns, bends, sigmas):
     turns, bends : radians and 1/m by which arcs are tried to leave it, positive uphill
     """
     t, u, z = arc.beside(points)
-    gap, fit, short, near = (int(round(v / RETURN.across_cell)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length,
-                                                                          CURBS.behind_fit_length, CURBS.steep_half_width))
+    gap, fit, short = (int(round(v / RETURN.across_cell)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length, CURBS.behind_fit_length))
     road = np.flatnonzero((u > -CURBS.blurred_face_half_width - CURBS.road_fit_length) & (u < -CURBS.blurred_face_half_width))
     if len(road) < INDEPENDENT:
         return None
@@ -115,7 +115,8 @@ def _best_average(arc, points, turns, bends, sigmas):
     cells = zero + SHIFTS[-1] + gap + short + 2
     half = 0.5 * RETURN.led_length
     halves, spread = zip(*(_profiles(*(v[part] for v in (t, u, z)), turns, bends, zero, cells) for part in (t < half, t >= half)))
-    whole = _Levels(0.5 * (halves[0] + halves[1]))
+    averages = 0.5 * (halves[0] + halves[1])
+    whole = _Levels(averages)
     cells_of_shifts = zero + SHIFTS
     with np.errstate(invalid="ignore", divide="ignore"):
         level = whole.height[:, slice(*(zero + int(round(end / RETURN.across_cell)) for end in RETURN.level_road))]
@@ -137,11 +138,11 @@ def _best_average(arc, points, turns, bends, sigmas):
     cell, height, least = cells_of_shifts[shift], float(height[k, shift]), CURBS.significant_sigmas * max(float(doubt[k]), CURBS.texture_sigma)
     lower_half = min(_Levels(profiles[k:k + 1]).height[0, cell] for profiles in halves)
     slopes = whole.before.slope[k, cell], whole.behind.slope[k, cell]
-    sharp = whole.smooth[k, cell + near] - whole.smooth[k, cell - near] - near * RETURN.across_cell * sum(slopes)
     scatter = float(whole.scatter(cells_of_shifts)[k, shift])
     bottom, up = float(whole.before.level[k, cell]), arc.uphill
-    good = height >= least and lower_half >= RETURN.min_half_share * least and sharp >= RETURN.min_sharp_share * height \
-        and scatter <= CURBS.max_averaged_scatter and max(map(abs, slopes)) <= CURBS.max_road_slope
+    good = height >= least and lower_half >= RETURN.min_half_share * least \
+        and scatter <= CURBS.max_averaged_scatter and max(map(abs, slopes)) <= CURBS.max_road_slope \
+        and _gain_over_bend(averages[k, cell - gap - fit:cell + gap + short + 1], gap + fit) >= 0.5 * CURBS.significant_sigmas**2
     if not good or abs(bottom - arc.h) > CURBS.height_tolerance + RETURN.max_height_grade * RETURN.led_step:
         return None
     across = up * float(SHIFTS[shift] * RETURN.across_cell)
@@ -151,6 +152,19 @@ def _best_average(arc, points, turns, bends, sigmas):
     values = (middle.x, middle.y, -up * np.sin(middle.heading), up * np.cos(middle.heading), bottom + half * float(plane[2]), height, 0.0, scatter,
               int(whole.before.n[k, cell]), int(whole.behind.n[k, cell]))
     return seen, PlanSteps(*(np.array([value]) for value in values))
+
+
+def _gain_over_bend(averages, middle):
+    """Nats by which a step in the cell `middle` of (C,) averages explains them better than ground that bends once and has none: two planes meet in
+    a gutter or at the foot of a ramp, and lines fitted beside the bend lie above each other, too."""
+    u = (np.arange(len(averages)) - middle) * RETURN.across_cell
+    seen = np.isfinite(averages)
+    u, face = u[seen], np.clip(u[seen] / CURBS.blurred_face_half_width, -1.0, 1.0)
+
+    def unexplained(*step):
+        bent = (np.stack([np.ones(len(u)), u, np.maximum(u - bend, 0.0), *step], axis=1) for bend in u[2:-2])
+        return min(float(np.square(averages[seen] - ground @ np.linalg.lstsq(ground, averages[seen], rcond=None)[0]).sum()) for ground in bent)
+    return 0.5 * INDEPENDENT * np.log(unexplained() / unexplained(face))
 
 
 def _profiles(t, u, z, turns, bends, zero, cells):
@@ -178,7 +192,7 @@ class _Levels:
                                                                         CURBS.behind_fit_length))
         sums = RunningSums(averages.shape, RETURN.across_cell)
         sums.add(averages)
-        self.before, self.behind, self.smooth = SideLines(sums, -gap - fit, -gap), SideLines(sums, gap, gap + short), sums.mean(-1, 1)
+        self.before, self.behind = SideLines(sums, -gap - fit, -gap), SideLines(sums, gap, gap + short)
         filled = (self.before.n >= CURBS.min_filled_share * (fit + 1)) & (self.behind.n >= CURBS.min_filled_share * (short + 1))
         self.height = np.where(filled, self.behind.level - self.before.level, np.nan)
 

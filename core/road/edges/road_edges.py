@@ -177,12 +177,13 @@ def _nearest_passes(course, station, frame):
 
 # How uncertain the place of a road edge is: one sigma across it.
 #
-# Seven things add up as squares: how well the foot of a curb is found at all, and how much better with more points on it; curb points scatter about
-# the line, and their errors go on over metres; towards its ends a line is held from one side only; passes that were driven apart and laid on each
-# other agree on a middle of which nobody knows how far off it is; a bridge is an even bend led across a gap, and off by what the bend changes in
-# it, which grows with the third power of the gap; and where a line was fitted as a whole to few laser points, its curb points are off together by
-# what the fit says. The shares were found on simulated streets with truth (docs/accuracy.md). It holds against the points of the survey: what they
-# are off as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does not show it.
+# Seven things add up as squares: the foot of a curb return is found to some millimetres at best, that of a main edge the better the more points are
+# on it; curb points scatter about the line, and their errors go on over metres; towards its ends a line is held from one side only; passes that were
+# driven apart and laid on each other agree on a middle of which nobody knows how far off it is; a bridge is an even bend led across a gap, and off by
+# what the bend changes in it, which grows with the third power of the gap; and where a line was fitted as a whole to few laser points, its curb
+# points are off together by what the fit says. The shares were found on simulated streets with truth (docs/accuracy.md). It holds against the points
+# of the survey: what they are off as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does
+# not show it.
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,

@@ -230,11 +230,27 @@ def ridge_of(place: np.ndarray) -> np.ndarray:
     even = np.arange(0.0, driven[-1], TRACK.ridge_spacing)
     flat = np.stack([np.interp(even, driven, axis) for axis in track.T], axis=1)
     flat = robustly_smoothed(flat, np.ones(len(flat)), TRACK.ridge_stiffness)
+    _refuse_even(density, (flat - corner) / TRACK.cell)
     total = np.maximum(np.bincount(cell, minlength=count.size), 1e-9)
     height = (np.bincount(cell, ground[:, 2], minlength=count.size) / total).reshape(shape)
     c, r = np.clip(((flat - corner) / TRACK.cell).astype(np.int64), 0, [shape[1] - 1, shape[0] - 1]).T
     z = robustly_smoothed(height[r, c][:, None], (count[r, c] > 0).astype(float), TRACK.ridge_stiffness)[:, 0]
     return np.column_stack([flat, z + TRACK.usual_height])
+
+
+def _refuse_even(density, track):
+    """Refuse ground that is about as dense on one side of a track as on it: under a scanner density falls off, see `first_track`.
+
+    density : (rows, columns), 0 beyond what was seen; track : (M, 2) column and row
+    """
+    way = np.gradient(track, axis=0)
+    aside = way[:, ::-1] / np.maximum(np.hypot(*way.T), 1e-9)[:, None] * [-2.0, 2.0] * TRACK.density_width / TRACK.cell
+    on, *beside = (ndimage.map_coordinates(density, (track + shift * aside).T[::-1] - 0.5, order=1) for shift in (0.0, -1.0, 1.0))
+    share = float(np.median(np.max(beside, axis=0) / np.maximum(on, 1e-9)))
+    if share > TRACK.most_even_share:
+        raise RoadExtractionError(
+            f"The points have no times, and no track shows in their density: {2 * TRACK.density_width:.1f} m beside where they are densest it is "
+            f"{100 * share:.0f} % of that, and under a scanner on a vehicle 20 to 60 %. Give a trajectory, or the points as they were measured.")
 
 
 def _on_ground(place):

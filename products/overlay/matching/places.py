@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -194,9 +195,9 @@ def find_places(photo: np.ndarray, paint: np.ndarray, cell: float, bounds: Bound
     sizes = np.exp(_steps(float(np.log(bounds.sizes[0])), float(np.log(bounds.sizes[1])), step))
     rough: list[Place] = []
     first = _Round(photo, paint, cell, middle_size, _CELLS[0])
-    for number, turn in enumerate(turns):
-        progress.report(0.7 * number / len(turns))
-        for size in sizes:
+    for number, size in enumerate(sizes):   # of one size after the other: the paint is transformed once for all turns
+        progress.report(0.7 * number / len(sizes))
+        for turn in turns:
             rough += first.peaks(turn, size, bounds, _PEAKS, sign)
     rough = _distinct(rough, step * half, _KEPT)
     second = _Round(photo, paint, cell, middle_size, _CELLS[1])
@@ -274,11 +275,27 @@ class _Round:
 
     def best_about(self, place, span):
         """The best place of those turned and scaled by a span or not at all, with the correlation where both are known as its score."""
-        near = Bounds(place.x, place.y, 2.5 * _CELLS[0], (0.0, 0.0), (0.0, 0.0))
-        self._best = 0.0
-        tried = [one for turn in (-span, 0.0, span) for size in (-span, 0.0, span)
-                 for one in self.peaks(place.turn + turn, place.size * np.exp(size), near, 1, place.sign)]
-        return max((self.judged(one) for one in tried), key=lambda one: one.score, default=self.judged(place))
+        near, tried = int(2.5 * _CELLS[0] / self.cell), []
+        for turn, size in product((place.turn - span, place.turn, place.turn + span), place.size * np.exp([-span, 0.0, span])):
+            canvas = self.warped(turn, float(size))
+            column, row = self._corner(place, len(canvas))
+            sums = cv2.matchTemplate(self._part(column - near, row - near, len(canvas) + 2 * near), canvas, cv2.TM_CCORR)
+            down, across = np.unravel_index((place.sign * sums).argmax(), sums.shape)
+            x, y = (column - near + across + len(canvas) / 2) * self.cell, -(row - near + down + len(canvas) / 2) * self.cell
+            tried.append(self._judged(place._replace(x=float(x), y=float(y), turn=turn, size=float(size)), canvas))
+        return max(tried, key=lambda one: one.score)
+
+    def _corner(self, place, side):
+        """Column and row of the first cell of the photo's canvas, which is that large, at a place."""
+        return round(place.x / self.cell - side / 2), round(-place.y / self.cell - side / 2)
+
+    def _part(self, column, row, side):
+        """A square of the paint from a cell on, 0 where it reaches beyond."""
+        part, (height, width) = np.zeros((side, side), np.float32), self.paint.shape
+        rows, columns = slice(max(row, 0), min(row + side, height)), slice(max(column, 0), min(column + side, width))
+        if rows.start < rows.stop and columns.start < columns.stop:
+            part[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column] = self.paint[rows, columns]
+        return part
 
     def _middles(self, shape, side, bounds):
         """(x and y of the photo's middle for every column and row of a product, those too far away as (H, W) bool)."""
@@ -290,16 +307,10 @@ class _Round:
             self._places = key, (across, -down, far)
         return self._places[1]
 
-    def judged(self, place):
+    def _judged(self, place, canvas):
         """The place with the correlation of both contrasts where both are known as its score."""
-        canvas = self.warped(place.turn, place.size)
-        side = len(canvas)
-        column, row = round(place.x / self.cell - side / 2), round(-place.y / self.cell - side / 2)
-        height, width = self.paint.shape
-        rows, columns = slice(max(row, 0), min(row + side, height)), slice(max(column, 0), min(column + side, width))
-        paint = self.paint[rows, columns]
-        photo = canvas[rows.start - row:rows.stop - row, columns.start - column:columns.stop - column]
-        photo = np.where(paint == 0, 0.0, photo)
+        paint = self._part(*self._corner(place, len(canvas)), len(canvas))
+        photo = np.where(paint == 0, 0.0, canvas)
         norm = float(np.sqrt((paint * paint).sum() * (photo * photo).sum()))
         return place._replace(score=place.sign * float((paint * photo).sum()) / norm if norm else 0.0)
 

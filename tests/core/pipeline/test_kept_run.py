@@ -76,6 +76,14 @@ def without_lane(road_map):
     return layer
 
 
+def moved_line(road_map, aside):
+    """The correction of a marking line that lies some metres farther to the side."""
+    layer = Features("any", CORRECTIONS, crs=road_map.crs)
+    line = next(line for line, row in road_map.marking_lines if row["status"] == "measured")
+    layer.add(shapely.transform(line, lambda places: places + [0.0, aside, 0.0], include_z=True), action="move", target="marking")
+    return layer
+
+
 @pytest.fixture(scope="module")
 def alone(street, tmp_path_factory):
     """What runs give that keep nothing: as surveyed, with an edge that is moved, and with a lane that is deleted."""
@@ -98,6 +106,18 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
         # taken back, nothing is made again but the image, of which there is one
         without(patch, {*SURFACE, "fit_marking_lines", "make_driving_lines"} - {"make_intensity_image"})
         assert made(street, tmp_path, kept)[0] == alone[0]
+
+
+def test_a_moved_line_takes_its_name_and_the_lanes_alone_and_is_never_that_of_another_correction(street, alone, tmp_path, monkeypatch, kept):
+    _, road_map = made(street, tmp_path, kept)
+    without(monkeypatch, (*SURFACE, "fit_marking_lines"))
+    moved = [moved_line(road_map, aside) for aside in (0.1, 0.2)]
+    found = [made(street, tmp_path, kept, corrections)[0] for corrections in moved]
+    assert found[0] != found[1]
+    monkeypatch.undo()
+    assert [made(street, tmp_path, corrections=corrections)[0] for corrections in moved] == found
+    without(monkeypatch, (*SURFACE, "fit_marking_lines", "named_by_estimate", "make_driving_lines", "marking_curvature"))
+    assert made(street, tmp_path, kept, moved[0])[0] == found[0]
 
 
 def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path, monkeypatch, kept):

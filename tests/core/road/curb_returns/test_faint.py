@@ -13,11 +13,16 @@ NOISE = 0.012   # m, of heights: that of a scanner of 64 beams
 TIP = 10.0      # x at which the sure curb ends, 1 m before its corner begins
 
 
-def led(height, beside=0.0, turned=0.0, **options):
-    """What continues from a left-hand curb that ends at TIP, along a corner of 5 m radius into a side street; heights of the rest in m."""
+def led(height, beside=0.0, turned=0.0, gutter=0.0, **options):
+    """What continues from a left-hand curb that ends at TIP, along a corner of 5 m radius into a side street; heights of the rest in m.
+
+    gutter : slope of the ground on either side of a gutter, whose bottom runs 15 cm before the corner's edge
+    """
     area = side_street(radius=5.0)
     x, y, z, _ = scan(area, height=height, noise=NOISE, spacing=0.03, **options)
     z[shapely.contains_xy(shapely.box(-9, 3.5, TIP, 30), x, y)] += 0.10 - height
+    near = np.flatnonzero((x > TIP - 2.0) & (x < TIP + 8.0) & (y > 1.0) & (y < 12.0))
+    z[near] += gutter * shapely.distance(shapely.points(x[near], y[near]), shapely.boundary(shapely.buffer(area, 0.15, quad_segs=64)))
     raster = averaged(ground_raster(x, y, z, 0.05), 0.05)
     ends = FollowedEnds(*np.array([[TIP, 3.5 + beside, 0.0, np.cos(turned), np.sin(turned), -1.0, np.nan, 0]]).T)
     found = led_on(raster, ends)
@@ -33,6 +38,11 @@ def test_a_curb_dropped_to_two_centimetres_is_followed_around_its_corner():
 
 def test_a_flush_edge_is_none():
     assert not len(led(0.0)[0])
+
+
+def test_a_gutter_is_none_but_a_dropped_curb_beside_it_is_followed():
+    assert not len(led(0.0, gutter=0.1)[0])
+    assert len(led(0.02, gutter=0.1)[0]) > 12
 
 
 def test_what_begins_beside_the_curb_or_in_another_direction_does_not_lead_on():

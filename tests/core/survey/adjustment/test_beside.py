@@ -57,8 +57,9 @@ def test_where_their_heights_part_is_named_place_by_place():
     assert any(f"at {start} to {end} m" in warned for start, end in ((100, 200), (0, 100), (90, 200), (0, 110))), warned
 
 
-@pytest.mark.parametrize("survey", [carriageways(apart=45.0), carriageways(level=6.0)], ids=["another street", "a bridge above"])
-def test_roads_far_off_or_on_another_level_are_not_compared(survey):
+@pytest.mark.parametrize("second", [dict(apart=45.0), dict(level=6.0)], ids=["another street", "a bridge above"])
+def test_roads_far_off_or_on_another_level_are_not_compared(second):
+    survey = carriageways(**second)
     assert len(survey.frame.roads) == 2 and not roads_beside(survey.frame)
 
 
@@ -67,7 +68,8 @@ def test_a_street_driven_again_with_heights_of_another_kind_is_named_as_one_road
     assert "48.00 m above" in warned and "heights of two kinds" in warned
 
 
-@pytest.mark.parametrize("survey", [carriageways(apart=0.4, level=6.0, rise=lambda x: 0.02 * x), carriageways(level=6.0)],
+@pytest.mark.parametrize("second", [dict(apart=0.4, level=6.0, rise=lambda x: 0.02 * x), dict(level=6.0)],
                          ids=["a ramp above", "a carriageway higher up the slope"])
-def test_what_climbs_above_a_road_or_runs_beside_it_is_another_road(survey):
+def test_what_climbs_above_a_road_or_runs_beside_it_is_another_road(second):
+    survey = carriageways(**second)
     assert len(survey.frame.roads) == 2 and not warnings_of_levels(survey.frame)

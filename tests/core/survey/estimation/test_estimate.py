@@ -165,6 +165,13 @@ def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_
     assert np.abs(track.z[inner] - 100.0 - 2.5).max() < 0.5
 
 
+def test_points_as_dense_everywhere_show_no_track_without_times(tmp_path):
+    x, y = np.random.default_rng(4).uniform([0.0, -15.0], [120.0, 15.0], (60_000, 2)).T
+    path = write_cloud(tmp_path / "air.las", x + EAST, y + NORTH, np.full(len(x), 100.0), None)
+    with pytest.raises(RoadExtractionError, match="no track shows in their density"):
+        estimate_trajectory([path])
+
+
 def test_a_cloud_in_feet_that_no_crs_tells_of_is_noted(tmp_path):
     drive = mirror_drive(BUTTERFLY, corners=OPEN)
     found = estimate_trajectory([write_cloud(tmp_path / "cloud.las", *drive.place.T / 0.3048, drive.time, source=1 + drive.scanner)])
