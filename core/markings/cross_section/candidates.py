@@ -100,14 +100,16 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
 
 def _up_to_areas(d, number, hatching):
     """Offsets of lines without what stands for the next dash at their ends, `number` -1, on hatched areas: these show at once that lines end."""
-    values, station, owner, own = d.values.copy(), d.spans.station, d.spans.owner, number.values >= 0
+    values, station, owner, seen = d.values.copy(), d.spans.station, d.spans.owner, number.values >= 0
     begin, last = np.full(len(d), d.spans.stations), np.full(len(d), -1)
-    np.minimum.at(begin, owner[own], station[own])
-    np.maximum.at(last, owner[own], station[own])
-    beyond = (station < begin[owner]) | (station > last[owner])
+    np.minimum.at(begin, owner[seen], station[seen])
+    np.maximum.at(last, owner[seen], station[seen])
+    beyond = np.flatnonzero((station < begin[owner]) | (station > last[owner]))
+    beyond = beyond[np.argsort(station[beyond], kind="stable")]
+    stations = station[beyond]
     for left in range(0, len(hatching), 2):
         first = hatching.spans.first[left]
-        rows = np.flatnonzero(beyond & (station >= first) & (station < hatching.spans.end[left]))
+        rows = beyond[slice(*np.searchsorted(stations, [first, hatching.spans.end[left]]))]
         high, low = (hatching.row(side)[station[rows] - first] for side in (left, left + 1))
         values[rows[(values[rows] < high) & (values[rows] > low)]] = np.nan
     return d.like(values, np.nan)
