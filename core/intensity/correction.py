@@ -37,8 +37,7 @@ from .weights import ASPHALT
 
 MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # derived: share at its lowest: the quantile from which asphalt's spread is taken
 SCANNER_NUMBERS = 256   # derived: numbers that a scanner may have
-PHOTOGRAPHED = ("Intensity was not corrected: neighbouring points are as alike as pixels of photographs, whose brightness does not depend on the "
-                "distance from the scanner.")
+PHOTOGRAPHED = ("Intensity was not corrected: it is that of photographs, whose brightness does not depend on the distance from the scanner.")
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
 
 

@@ -34,7 +34,8 @@ class ScannerScatter:
         out, and are taken for not noisy
     points : {(road, window): (scanners,) points of each scanner}
     differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
-        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two
+        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two; 0 of
+        points whose brightness is that of their colours
     """
 
     shares: dict[int, float]
@@ -100,7 +101,10 @@ def scanner_scatter(road_points: RoadPoints) -> Work:
                   state=lambda item: [road_points.state(road, *_stations(window, window + 1)) for road, window in item], listed=WINDOWS_PER_TASK)
     measured = yield Asked(phase, windows, 1.0)
     squares = [entry for _, entry in measured]
-    return ScannerScatter(_shares(squares), {key: count for key, (count, _) in zip(windows, measured)}, _shares(squares, 3))
+    shares = _shares(squares)
+    # in photographs of many pixels, single points scatter as under a scanner
+    differences = dict.fromkeys(shares, 0.0) if road_points.of_colours else _shares(squares, 3)
+    return ScannerScatter(shares, {key: count for key, (count, _) in zip(windows, measured)}, differences)
 
 
 def scatter_of_windows(road_points: RoadPoints, windows: Sequence[WindowKey]) -> list[tuple[np.ndarray, tuple[np.ndarray, ...]]]:

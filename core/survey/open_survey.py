@@ -123,7 +123,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     feet = _check_height(height, crs, (fitted.seen, read.moved), progress)
     total, (scanner_field, scanners) = sum(file.count for file in files), read.summary.census.choose(settings.scanner_field)
     survey = Survey(files, frame, read.store, crs, read.heights, scanner_field, scanners, read.summary.brightest > read.summary.darkest, has_time,
-                    dict(read=total, kept=read.store.count, outside=total - read.store.count), above_road=settings.above_road)
+                    dict(read=total, kept=read.store.count, outside=total - read.store.count), above_road=settings.above_road,
+                    of_colours=intensity.field == "rgb")
     progress.info(f"Points read: {survey.counts['read']:,} from {len(files)} file(s), {store.count:,} near the road kept; {len(frame.roads)} "
                  f"road(s), {len(frame.passes)} pass(es), {len(survey.scanners)} scanner(s); sensor {height:.2f} m above the road.")
     _say_brightness(survey, intensity, settings, samples, progress)

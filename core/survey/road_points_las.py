@@ -92,6 +92,7 @@ def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
 # Road points as a LAZ file, with the road frame in extra fields for the later stages.
 
 ROAD_CLASS = 11  # source: ASPRS, road surface
+COLOURS_USER_ID = "LanewrightRGB"   # of a LAS record that says that intensities are the brightness of colours
 MILLIMETRE = 1e-3   # source: definition; m of widths and spacings in the file
 
 # stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
@@ -134,6 +135,8 @@ def _header(road_points):
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
     header.vlrs.extend(sigma_to_record(road_points.pass_sigma))
+    if road_points.of_colours:
+        header.vlrs.append(laspy.VLR(COLOURS_USER_ID, 1, "Brightness is of colours"))
     place_in_file(header, road_points.origin, road_points.crs, _farthest(road_points))
     return header
 
@@ -180,6 +183,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         crs, moves, sigma = cloud_crs(header), PassCorrections.of_records(header.vlrs), sigma_of_records(header.vlrs)
+        of_colours = any(record.user_id.rstrip("\0") == COLOURS_USER_ID for record in header.vlrs)
     store = SectionStore(point_dtype(ROAD_POINT, farthest))
     count = 0
     for block in read_blocks(path, LAS.points_per_block):
@@ -194,7 +198,8 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         progress.report(count / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, crs, "intensity_corrected" in names, "cluster" in names, moves, "spacing" in names, sigma)
+    return RoadPoints(store, origin, crs, "intensity_corrected" in names, "cluster" in names, moves, "spacing" in names, sigma,
+                      of_colours=of_colours)
 
 
 def _read_records(block, names, scales, dtype):

@@ -26,7 +26,8 @@ from .store.records import COORDINATE_SCALE, Points, road_of
 from .store.section_store import SectionStore, StoreIndex, Stretch, opened_store
 from .weights import FRAME, LAS, READING, STORE
 
-SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
+SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road",
+           "of_colours")
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,7 @@ class Survey:
     executor: Executor = THREADS   # Executor of the phases that read from this survey
     file: Path | None = None   # by which other processes open it, None where the points are this one's alone
     splitter: ScannerSplitter | None = None   # distinguishes scanners that no field distinguishes; None where there is no need
+    of_colours: bool = False   # whether intensities are the brightness of colours
 
     def __post_init__(self) -> None:
         self.store.finish = lambda road, records: self.finishing(road, records)

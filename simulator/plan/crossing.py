@@ -19,6 +19,8 @@ _IN_CURB, _OUT_CURB = 7.0, -4.4      # curbs beside the traffic towards and away
 _IN_LINE, _OUT_LINE = 6.5, -3.95     # edge lines
 _BETWEEN = 3.25                      # line between the lane to the left and the one straight on and to the right
 _CORNER = 8.0        # m, radius of the curbs
+# m from the middle of the crossing: the curbs beside the traffic towards and away from it turn there, and the lanes end
+_IN_MOUTH, _OUT_MOUTH = _CORNER - _OUT_CURB, _CORNER + _IN_CURB
 _ZEBRA = (16.2, 19.4)    # m from the middle of the crossing
 _STOP = (20.6, 21.1)
 _DROPPED = 0.5       # m of dropped curb beyond both ends of a zebra crossing, before the ramp
@@ -61,7 +63,7 @@ def crossing(length: float, seed: int, radius: float, curb_height: float, gutter
     def where(ring, k):
         out = np.max([path.locate(ring)[0] for path in arms], axis=0)
         main = np.max([path.locate(ring)[0] for path in (east, west)], axis=0) == out
-        tangent = np.where(_leftward(arms, ring), _CORNER - _OUT_CURB, _CORNER + _IN_CURB)
+        tangent = np.where(_leftward(arms, ring), _IN_MOUTH, _OUT_MOUTH)
         return np.where(out < tangent + 0.1, "corner", np.where(main, "main", "side_street"))
 
     return road.scene(carriageway, height, [sidewalk(1, 0.0, curb_height)], lambda ring, k: np.zeros(len(ring), dtype=int), where, passes,
@@ -88,9 +90,9 @@ def _paint(road, number, path, arm):
         # arrows point towards the crossing, against the path
         road.figure("arrow", [left_arrow(tip + 4.5, _BETWEEN / 2, -1)], path)
         road.figure("arrow", [turn_arrow(tip + 4.5, (_BETWEEN + _IN_LINE) / 2, -1)], path)
-    road.lane(number, 1, path, _STOP[1], end, 0.0, _BETWEEN, -1)
-    road.lane(number, 2, path, _STOP[1], end, _BETWEEN, _IN_LINE, -1)
-    road.lane(number, 3, path, _ZEBRA[1] + 0.5, end, _OUT_LINE, 0.0, 1)
+    road.lane(number, 1, path, _IN_MOUTH, end, 0.0, _BETWEEN, -1)
+    road.lane(number, 2, path, _IN_MOUTH, end, _BETWEEN, _IN_LINE, -1)
+    road.lane(number, 3, path, _OUT_MOUTH, end, _OUT_LINE, 0.0, 1)
 
 
 def _objects(road, path, arm, k):

@@ -113,6 +113,7 @@ def _border(u):
 
 def _paint(road, number, path, arm):
     end, far = arm + 1.0, _SPLITTERS[1][1]
+    mouth = float(np.sqrt((_RING + _CORNER) ** 2 - (_BROAD + _CORNER) ** 2))   # where the curbs begin to turn, and the lanes end
     road.line("centre line", path, far + 0.8, far + _SOLID, 0.0, _LINE)
     road.line("centre line", path, far + _SOLID + 3.0, end, 0.0, _LINE, dash=(3.0, 6.0))
     road.line("edge line", path, _ZEBRA[1] + 1.0, end, lambda u: _half(u) - _LINE_FROM_CURB, _LINE)
@@ -120,8 +121,8 @@ def _paint(road, number, path, arm):
     for side in (1, -1):
         low, high = sorted((side * (_splitter(_ZEBRA[0]) + 0.25), side * (_BROAD - 0.3)))
         road.figure("zebra crossing", zebra_bars(*_ZEBRA, low, high, bar=0.5, gap=0.5), path)
-    road.lane(number, 1, path, _ZEBRA[1] + 1.0, end, _border, lambda u: _half(u) - _LINE_FROM_CURB, -1)
-    road.lane(number, 2, path, _ZEBRA[1] + 1.0, end, lambda u: _LINE_FROM_CURB - _half(u), lambda u: -_border(u), 1)
+    road.lane(number, 1, path, mouth, end, _border, lambda u: _half(u) - _LINE_FROM_CURB, -1)
+    road.lane(number, 2, path, mouth, end, lambda u: _LINE_FROM_CURB - _half(u), lambda u: -_border(u), 1)
 
 
 def _give_way(road, arms):

@@ -27,7 +27,7 @@ def confidence_figures(case, track, lanes):
         if not len(places) or row.get("confidence") is None:
             continue
         off = distance(places, case.truth.driving)
-        counted = in_a_true_lane(places, off, road)
+        counted = in_a_true_lane(places, off, case.truth.driving, road)
         key = str(int(np.searchsorted(BINS, row["confidence"], side="right")) - 1)
         right, number = float((off[counted] <= BROAD).sum()), float(counted.sum())
         found[key] = tuple(np.add(found.get(key, (0.0, 0.0, 0.0)), (right, number, number * row["confidence"])).tolist())

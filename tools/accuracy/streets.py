@@ -96,16 +96,19 @@ def driving_figures(truth, track, lines):
             found[f"{name}_5"] += (off <= NARROW).sum(), len(off)
     places, ahead = sampled(lines, truth.area)
     off = distance(places, truth.driving)
-    counted = in_a_true_lane(places, off, road)
+    counted = in_a_true_lane(places, off, truth.driving, road)
     found["lanes_right"] = (off[counted] <= BROAD).sum(), counted.sum()
     close = off < SAME
     found["directions"] = (_agree(places[close], ahead[close], truth.driving) > 0).sum(), close.sum()
     return {name: tuple(map(float, pair)) for name, pair in found.items() if pair[1]}
 
 
-def in_a_true_lane(places, off, road):
-    """(N,) bool, False for places on the track (a shapely line) where the truth has no lane; `off` m lies the nearest true driving line."""
-    return (off <= APART) | (shapely.distance(shapely.points(places), road) >= APART)
+def in_a_true_lane(places, off, true, road):
+    """(N,) bool, False for places on the track (a shapely line) where the truth has no lane: `off` m lies the nearest `true` driving line, and no
+    farther than BROAD what is beside it and not beyond its end."""
+    ends = shapely.get_coordinates([shapely.get_point(line, k) for line in true for k in (0, -1)])
+    beside = (off <= BROAD) | (off < distance(places, list(shapely.points(ends))) - 1e-6)
+    return (off <= APART) & beside | (shapely.distance(shapely.points(places), road) >= APART)
 
 
 def _within_sigma(rows, true, near, area):

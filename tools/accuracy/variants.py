@@ -1,7 +1,8 @@
 """The same street surveyed otherwise: mirrored, turned, driven the other way, thinned, with stations that begin elsewhere.
 
 A variant changes points and trajectory; its road map is changed back and judged by the truth of the street itself. None should make
-much of a difference: mirrored, a map of right-hand traffic becomes one of left-hand traffic.
+much of a difference: mirrored, a map of right-hand traffic becomes one of left-hand traffic. A mirrored survey has no CRS: with that of the street
+it would lie where traffic drives on the other side.
 """
 
 from dataclasses import dataclass
@@ -78,8 +79,10 @@ class Variant:
             setattr(las, axis, moved[:, k])
         if self.reversed:
             las.gps_time = span[0] + span[1] - np.asarray(las.gps_time)
-        if self.mirrored and "scan_angle" in las.point_format.dimension_names:
-            las.scan_angle = -np.asarray(las.scan_angle)
+        if self.mirrored:
+            las.header.vlrs = [record for record in las.header.vlrs if record.user_id != "LASF_Projection"]
+            if "scan_angle" in las.point_format.dimension_names:
+                las.scan_angle = -np.asarray(las.scan_angle)
         las.write(str(target))
 
 

@@ -34,6 +34,7 @@ class RoadPoints:
     density: Any = ()   # CubeDensity of all points of the survey and of these, where that was asked for
     of_scanners: np.ndarray | None = None   # as of `points_of_scanners`, where they were counted
     seen: dict[int, list[Seen]] | None = None   # as of `seen_surface`, where that was looked at
+    of_colours: bool = False   # as of the Survey
 
     @property
     def executor(self) -> Executor:
@@ -51,7 +52,7 @@ class RoadPoints:
         if other is not None:
             store = SectionStore(other.store.dtype, other.store.section_length)
             return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves, other.has_spacing,
-                       other.pass_sigma)
+                       other.pass_sigma, of_colours=other.of_colours)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
@@ -60,7 +61,7 @@ class RoadPoints:
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
         store = SectionStore(dtype, survey.store.section_length, survey.executor.folder, dict(corrected=np.nan, cluster=0, spacing=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves,
-                   pass_sigma=survey.frame.pass_sigma, survey=survey)
+                   pass_sigma=survey.frame.pass_sigma, survey=survey, of_colours=survey.of_colours)
 
     def close(self) -> None:
         self.store.close()

@@ -1,5 +1,7 @@
 """Road points on their way through a file: to the bit what was passed on in memory."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drives import write_cloud
@@ -54,6 +56,13 @@ def test_what_passes_differ_by_goes_with_the_points(tmp_path, sigma):
     write_road_points(written, tmp_path / "road.laz")
     assert read_road_points(tmp_path / "road.laz").pass_sigma == sigma
     assert RoadPoints.empty_like(written).pass_sigma == sigma
+
+
+@pytest.mark.parametrize("of_colours", [False, True])
+def test_whether_brightness_is_that_of_colours_goes_with_the_points(tmp_path, of_colours):
+    written = replace(road_points(count=50), of_colours=of_colours)
+    write_road_points(written, tmp_path / "road.laz")
+    assert read_road_points(tmp_path / "road.laz").of_colours == RoadPoints.empty_like(written).of_colours == of_colours
 
 
 def test_points_of_moved_passes_are_written_as_measured_and_read_as_moved(tmp_path):

@@ -35,8 +35,8 @@ def grained(s, d, share, seed):
     return 1.0 + share * grain[(s / 0.02).astype(int), ((d + 8.0) / 0.02).astype(int)] / grain.std()
 
 
-def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None, progress=Progress()):
-    points = road_points(records, frame, section_length)
+def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None, progress=Progress(), of_colours=False):
+    points = replace(road_points(records, frame, section_length), of_colours=of_colours)
     path = folder / "image.tif"
     write_intensity_image(points, path)
     return extract_markings(points, IntensityImage.open(path), frame, progress=progress, mask_path=mask).all_points()
@@ -123,6 +123,17 @@ def test_a_line_in_photographs_is_found_in_the_shadow_of_a_house_and_beside_it_a
     records = records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * level(s, d), 4.0)
     found = found_on(records, tmp_path, progress=(heard := Heard()))
     assert "edges of shadows may be taken for it" in " ".join(heard.warned)
+    on_line = strip(9.9, 50.1, 0.95, 1.2)(found.s, found.d)
+    assert on_line.mean() > 0.98
+    assert len(np.unique(found.s[on_line] // 0.5)) >= 78
+
+
+def test_brightness_of_colours_is_that_of_photographs_also_where_each_point_scatters_by_itself(tmp_path):
+    line = strip(10, 50, 1.0, 1.15)
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    grain = np.random.default_rng(1).normal(1.0, 0.13, len(s)) / np.where((s + d) % 30.0 < 10.0, 2.0, 1.0)
+    colours = records_at(FRAME, s, d, np.where(line(s, d), 2.2, 1.0) * ASPHALT * grain, 4.0)
+    found = found_on(colours, tmp_path, of_colours=True)
     on_line = strip(9.9, 50.1, 0.95, 1.2)(found.s, found.d)
     assert on_line.mean() > 0.98
     assert len(np.unique(found.s[on_line] // 0.5)) >= 78
