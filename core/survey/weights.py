@@ -330,6 +330,8 @@ class TRACK:
     lowest_share: float = 0.25   # share of a window's points that lie below the ground as first guessed
     most_even_share: float = 0.75   # of the density of a track, two half widths beside it: under a mirror it is 0.2, under the heads of many beams
     # of two real surveys 0.5 and 0.6, and of even points 1
+    most_second_share: float = 0.45   # the same at the second densest of four places, two and four half widths to either side: where tracks of two
+    # drives lie 5 to 7 m apart it is 0.2 to 0.3, of surveys thinned to 30 cm 0.6 to 0.9
     density_rounds: int = 15   # rounds of reweighting
     stiffness: float = 300.0   # (0.5 m of scatter / 0.03 m by which a braking vehicle's place differs from even motion in a window)^2
     cell: float = 0.5   # m, side of a cell of the density

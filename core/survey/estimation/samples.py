@@ -241,13 +241,15 @@ def ridge_of(place: np.ndarray) -> np.ndarray:
 def _refuse_even(density, track):
     """Refuse ground that is about as dense on one side of a track as on it: under a scanner density falls off, see `first_track`.
 
+    Not where one of two places on each side is dense alone: there the track of another drive lies.
+
     density : (rows, columns), 0 beyond what was seen; track : (M, 2) column and row
     """
     way = np.gradient(track, axis=0)
     aside = way[:, ::-1] / np.maximum(np.hypot(*way.T), 1e-9)[:, None] * [-2.0, 2.0] * TRACK.density_width / TRACK.cell
-    on, *beside = (ndimage.map_coordinates(density, (track + shift * aside).T[::-1] - 0.5, order=1) for shift in (0.0, -1.0, 1.0))
-    share = float(np.median(np.max(beside, axis=0) / np.maximum(on, 1e-9)))
-    if share > TRACK.most_even_share:
+    on, *beside = (ndimage.map_coordinates(density, (track + shift * aside).T[::-1] - 0.5, order=1) for shift in (0.0, -2.0, -1.0, 1.0, 2.0))
+    share, second = (float(np.median(dense / np.maximum(on, 1e-9))) for dense in (np.max(beside[1:3], axis=0), np.sort(beside, axis=0)[-2]))
+    if share > TRACK.most_even_share and second > TRACK.most_second_share:
         raise RoadExtractionError(
             f"The points have no times, and no track shows in their density: {2 * TRACK.density_width:.1f} m beside where they are densest it is "
             f"{100 * share:.0f} % of that, and under a scanner on a vehicle 20 to 60 %. Give a trajectory, or the points as they were measured.")

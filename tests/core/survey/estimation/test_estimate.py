@@ -165,6 +165,18 @@ def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_
     assert np.abs(track.z[inner] - 100.0 - 2.5).max() < 0.5
 
 
+def test_without_time_a_street_driven_both_ways_is_followed_however_far_apart_its_tracks_lie(tmp_path):
+    x, y, z = mirror_drive(CROSSED, corners=OPEN).place.T
+    on_street = np.abs(y) < 14.0
+    for apart in (5.5, 10.0):
+        there, back = y[on_street], (apart - 3.0 - y)[on_street]
+        places = np.tile(x[on_street], 2) + EAST, np.r_[there, back] + NORTH, np.tile(z[on_street], 2) + 100.0
+        track = estimate_trajectory([write_cloud(tmp_path / "cloud.las", *places, None)]).trajectory
+        inner = (track.x - EAST > 5.0) & (track.x - EAST < 75.0)
+        assert inner.sum() > 100
+        assert (np.abs(track.y[inner] - NORTH + 1.5 - apart / 2) < apart / 2 + 0.6).all()
+
+
 def test_points_as_dense_everywhere_show_no_track_without_times(tmp_path):
     x, y = np.random.default_rng(4).uniform([0.0, -15.0], [120.0, 15.0], (60_000, 2)).T
     path = write_cloud(tmp_path / "air.las", x + EAST, y + NORTH, np.full(len(x), 100.0), None)
