@@ -88,6 +88,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         spacing = None if road_points is None else point_spacing(road_points, number, s)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
             sigma = lane_sigma(track, course, road.road, estimated, paint, passes[track.first:track.last + 1], spacing)
+            # no lane is surer than its place
+            tracks[lane - 1] = track = replace(track, confidence=np.minimum(track.confidence, share_within(sigma)))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(
                 track, track.direction, course, elements, estimated.lines, z, sigma, country(settings.country))]
             arcs += [dict(arc=arc, complete=element.complete, rmse=element.rmse, station=element.start, end=element.end, road=number, lane=lane)
