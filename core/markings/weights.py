@@ -172,6 +172,7 @@ class STRIPES:
     comb_step_along: float = 0.4   # m along the stripes that is taken together
     least_phase: float = 0.3   # mean cosine of the phase where there are stripes: a stop line beside them has 0
     min_width_of_pitch: float = 0.3   # of the pitch that a stripe is broad, least: lines with an arrow between them are narrower
+    min_of_mean_phase: float = 0.75   # of the mean phase that even stripes of their width have: crossings have 0.86 and more, words about 0.6
     max_width_of_pitch: float = 0.7   # most
     min_of_width: float = 0.5   # of the width of all stripes that one of them has at least
     min_of_usual: float = 0.2   # of the spots that a stripe usually has, and a step along all of them

@@ -261,7 +261,9 @@ def _row_of_stripes(number, off, along, comb):
     on_stripe = np.abs(off) < STRIPES.max_width_of_pitch / 2 * comb.pitch
     # half of what is spread evenly over a stripe lies within a quarter of its width
     width = 4 * float(np.median(np.abs(off[on_stripe])))
-    if width < max(STRIPES.stripe_width[0], STRIPES.min_width_of_pitch * comb.pitch):
+    # stripes that are painted all over have the mean phase that their width tells
+    if width < max(STRIPES.stripe_width[0], STRIPES.min_width_of_pitch * comb.pitch) \
+            or np.cos(2 * np.pi * off / comb.pitch).mean() < STRIPES.min_of_mean_phase * np.sinc(width / comb.pitch):
         return None
     width = min(width, STRIPES.stripe_width[1], STRIPES.max_width_of_pitch * comb.pitch)
     on_stripe = np.abs(off) <= width / 2

@@ -94,6 +94,13 @@ def test_other_paint_is_no_crossing(marks):
     assert not crossings_in(spots(marks)[0])
 
 
+@pytest.mark.parametrize("share, count", [(0.0, 5), (0.2, 0)])
+def test_bars_with_other_paint_between_them_as_of_letters_are_no_crossing(share, count):
+    bars = [strip(-1.5, 1.5, d, d + 0.29) for d in 0.85 * np.arange(-2, 3)]
+    between = spots([strip(-1.5, 1.5, -1.7, 1.99)], tracks=0.1, kept=share, seed=5)[0]
+    assert len(crossings_in(np.concatenate([spots(bars, tracks=0.1, kept=1.0)[0], between]))) == count
+
+
 def test_the_crossing_of_a_side_street_seen_on_few_tracks_is_a_crossing():
     """The road runs along s: its tracks cross the stripes, and spots on one track look like a dashed line."""
     records = paint(FRAME, [strip(s, s + 0.5, 1.0, 5.0) for s in np.arange(30.0, 36.0)], density=6000)

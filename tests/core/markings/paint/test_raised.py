@@ -40,6 +40,13 @@ def test_an_island_of_which_one_part_is_dark_is_raised():
     assert found[bright].mean() > 0.9 and not found[STRIPES].any()
 
 
+def test_the_lower_part_of_a_curb_face_is_raised_as_one_piece():
+    face = square(2.5, 8.5, 2.0, 2.2)
+    height = 0.02 * D + np.where(face, 0.15 * (D - 2.0), 0.0)   # 1.5 cm on average: less than a single square would have to stand up
+    found = raised(face | square(2.5, 8.5, 4.0, 4.5), height)
+    assert found[face].all() and found.sum() == face.sum()
+
+
 @pytest.mark.parametrize("height", [
     0.0 * D, 0.025 * np.abs(D - 4.0), 0.06 * S[:, None], 0.05 * (1 - np.cos(2 * np.pi * S[:, None] / 4.0)),
 ], ids=["level", "crown", "slope", "hump"])
