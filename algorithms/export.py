@@ -590,7 +590,8 @@ class ClassifyCloud(Algorithm):
         survey = open_survey_with(call, layers, progress.part(0.0, 0.4))
         samples = core.survey.las.samples.sample_files(files)
         intensity = core.survey.las.point_fields.intensity_source_of(samples, call.value("INTENSITY_FROM"))[0]
-        files, _ = core.survey.las.point_fields.in_one_scale(files, samples, call.value("INTENSITY_FROM"))
+        brightness = {file.path: file.brightness for file in survey.files}
+        files = [replace(file, brightness=brightness.get(file.path, 1)) for file in files]
         classifier = classify.PointClassifier(
             survey, classify.CloudLayers(*layers.values()), call.settings(CLOUD_SETTINGS), call.value("CORRIDOR"), intensity)
         total, done, counts = sum(file.count for file in files), 0, Counter()

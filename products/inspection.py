@@ -86,7 +86,8 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     copies: list[str] = []
     files = without_copies(read_headers(paths, copies.append, crs), copies.append)
     wkt = next((file.crs for file in files if file.crs), "") or crs
-    counter = _Counter(files, settings, _usable(trajectory, wkt))
+    usable = _usable(trajectory, wkt)
+    counter = _Counter(files, settings, usable)
     total, done = sum(file.count for file in files), 0
     for file in files:
         for block in read_blocks(file.path, units=file.units):
@@ -96,7 +97,8 @@ def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = 
     inspection = counter.inspection(files, wkt, trajectory, progress)
     samples = sample_files(files)
     usual = INTENSITY_SOURCES[0]
-    notes = coarse_coordinates(samples)[0], in_one_scale(files, samples, usual)[1], intensity_source_of(samples, usual)[1]
+    drive = None if usable is None else np.c_[usable.x, usable.y]
+    notes = coarse_coordinates(samples)[0], in_one_scale(files, samples, usual, drive)[1], intensity_source_of(samples, usual)[1]
     inspection.notes[:0] = copies + [note for note in notes if note]
     return inspection
 

@@ -108,7 +108,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, time_note, progress)
     samples = sample_files(files)
-    files, one_scale = in_one_scale(files, samples, settings.intensity_from)
+    files, one_scale = in_one_scale(files, samples, settings.intensity_from, np.c_[trajectory.x, trajectory.y])
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     folder = reading.folder
     section = settings.section_length or section_length(files, frame)

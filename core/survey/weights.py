@@ -197,7 +197,9 @@ class LAS:
     least_doubled: float = 0.02   # share of the points that share their time with one other, at least, where files were exported twice
     most_of_pairs: float = 0.5   # of these pairs, that lie apart alike
     sensor_bits: tuple[int, ...] = (8, 10, 11, 12)   # of intensities as sensors give them
-    other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees differ by less
+    other_scale: float = 6.0   # times the usual intensity of another file: asphalt, grass and trees near the vehicle differ by less
+    near_drive: float = 6.0   # m from the drive: up to there ranges and angles differ so little that the intensities of two files can be compared
+    least_compared: int = 100   # intensities of a file that are compared with those of another
     same_scale: float = 3.0   # times, that files with one scale may differ by
     farthest_height: float = 2e4   # m above or below the frame's origin: points beyond are outliers, and would overflow the integers of a record
 

@@ -66,7 +66,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     """
     count = len(lines.s)
     if hatching is not None:
-        lines = replace(lines, d=_over_areas(lines.d, hatching))
+        lines = replace(lines, d=_up_to_areas(_over_areas(lines.d, hatching), lines.number, hatching))
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], np.int8)
     usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
     drawn, owner = lines.drawn.values, lines.d.spans.owner
@@ -96,6 +96,23 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
                       found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
+
+
+def _up_to_areas(d, number, hatching):
+    """Offsets of lines without what stands for the next dash at their ends, `number` -1, on hatched areas: these show at once that lines end."""
+    values, station, owner, seen = d.values.copy(), d.spans.station, d.spans.owner, number.values >= 0
+    begin, last = np.full(len(d), d.spans.stations), np.full(len(d), -1)
+    np.minimum.at(begin, owner[seen], station[seen])
+    np.maximum.at(last, owner[seen], station[seen])
+    beyond = np.flatnonzero((station < begin[owner]) | (station > last[owner]))
+    beyond = beyond[np.argsort(station[beyond], kind="stable")]
+    stations = station[beyond]
+    for left in range(0, len(hatching), 2):
+        first = hatching.spans.first[left]
+        rows = beyond[slice(*np.searchsorted(stations, [first, hatching.spans.end[left]]))]
+        high, low = (hatching.row(side)[station[rows] - first] for side in (left, left + 1))
+        values[rows[(values[rows] < high) & (values[rows] > low)]] = np.nan
+    return d.like(values, np.nan)
 
 
 def _over_areas(d, hatching):

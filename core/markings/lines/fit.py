@@ -396,7 +396,7 @@ def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: i
             continue
         _, paint_offsets = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
         yield dict(
-            kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
+            kind="", pattern=piece.pattern, status=piece.status,
             curve=line.curve, arc=arc, places=np.c_[places[:, :2], places[:, 2] + track],
             station=piece.first, end=piece.last, offset=np.median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
             rmse=rmse if piece.status == "measured" else np.nan)

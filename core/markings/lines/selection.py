@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,6 @@ class SelectedLine:
     """A line with its pieces by status and pattern, and the stations it is drawn between."""
 
     line: LinkedLine
-    double: bool
     pieces: list
 
     def width(self, piece: _LinePiece) -> float:
@@ -50,7 +49,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
     parts = [stretches(line, longest_dash) for line in lines]
     level = np.array([median(d - trend.at(s)) for s, d, *_ in (line.places for line in lines)])
     painted = min(line.first for line in lines), max(line.last for line in lines)
-    ragged, double = _beside(lines, neighbours, trend, longest_dash)
+    ragged, twins = _beside(lines, neighbours, trend, longest_dash)
     selected = []
     for k, line in enumerate(lines):
         check_cancelled()
@@ -66,19 +65,35 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
         ends = [np.array([piece.first, piece.last]) for piece in pieces]
         crosses = [edges.bar(s, np.interp(s, *line.by_station), hatching=True) for s in ends]
         pieces = [piece for piece, hatched in zip(pieces, crosses) if piece.status == "measured" or not hatched]
-        selected.append(SelectedLine(line, bool(double[k]), pieces))
+        selected.append(SelectedLine(line, _named_double(pieces, *twins[k])))
     return selected
 
 
+def _named_double(pieces, stations, beside_twin):
+    """Pieces named double where enough of their paint has a twin, and those without paint where it has on both sides of them.
+
+    A double line may go on as a single one, such as dashes. `stations` : m, ascending, of places of the line
+    """
+    begin, end = np.searchsorted(stations, [[piece.first for piece in pieces], [piece.last for piece in pieces]])
+    count, total = end - begin, np.append(0, np.cumsum(beside_twin))
+    painted, every = np.flatnonzero(count), np.arange(len(pieces))
+    if not len(painted):
+        return pieces
+    double = (total[end] - total[begin])[painted] > SELECTION.max_ragged_share * count[painted]
+    before, behind = np.searchsorted(painted, every, side="right") - 1, np.searchsorted(painted, every)
+    double = double[before.clip(0)] & double[behind.clip(max=len(painted) - 1)]
+    return [replace(piece, pattern=f"double-{piece.pattern}") if of_piece else piece for piece, of_piece in zip(pieces, double.tolist())]
+
+
 def _beside(lines, beside, trend, longest_dash):
-    """(N,) ragged: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
-    ragged, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
-    tracks = []
+    """(N,) ragged: a sliver beside a longer line; of each line stations of its places, m, and whether it is one of a double line there."""
+    ragged, tracks = np.zeros(len(lines), bool), []
     for line in lines:
         s, d, *_ = line.places
         cell = np.floor(s / 0.5).astype(np.int64)
         cells, first = np.unique(cell, return_index=True)
         tracks.append((cells, (d - trend.at(s))[first]))
+    twins = [np.zeros(len(cells), bool) for cells, _ in tracks]
     for k in range(len(lines)):
         check_cancelled()
         for j in beside.between(lines[k].first, lines[k].last).tolist():
@@ -87,7 +102,8 @@ def _beside(lines, beside, trend, longest_dash):
             a, b = _shared(tracks[k][0], tracks[j][0])
             if len(a) < 3:
                 continue
-            spacing = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
+            apart = np.abs(tracks[k][1][a] - tracks[j][1][b])
+            spacing = median(apart)
             share = len(a) / len(tracks[k][0])
             if spacing <= LINKS.double_line_spacing[1] and share > SELECTION.min_shared_paint:
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
@@ -98,9 +114,9 @@ def _beside(lines, beside, trend, longest_dash):
                 if not twin and lines[k].painted < SELECTION.max_ragged_share * lines[j].painted and lines[k].painted < longest_dash:
                     ragged[k] = True
                 elif spacing >= LINKS.double_line_spacing[0]:
-                    double[k] = True
-                    double[j] |= len(a) / len(tracks[j][0]) > SELECTION.max_ragged_share
-    return ragged, double
+                    near = apart <= LINKS.double_line_spacing[1]
+                    twins[k][a[near]] = twins[j][b[near]] = True
+    return ragged, [(0.5 * cells + 0.25, twin) for (cells, _), twin in zip(tracks, twins)]
 
 
 def _shared(one, other):

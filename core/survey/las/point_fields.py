@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
@@ -210,15 +211,17 @@ def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[Int
     return IntensitySource(), ""
 
 
-def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wanted: str) -> tuple[list[CloudHeader], str]:
+def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wanted: str,
+                 drive: np.ndarray | None = None) -> tuple[list[CloudHeader], str]:
     """The files with intensities that have one scale, where some were written with fewer bits than others, and what to tell of them.
 
     LAS stores a value times 65,536 / the dynamic range of the sensor (ASPRS, LAS specification 1.4 R15, Intensity); some exporters do not multiply.
 
     wanted : one of INTENSITY_SOURCES
+    drive : (M, 2) m, places of the vehicle. What lies far from it is weaker in any scale, so only points near it are compared; None compares all.
     """
     usual = {sample.file.path: float(np.median(values)) for sample in samples
-             if len(values := sample.intensity[sample.intensity > 0]) and values.min() < values.max()}
+             if len(values := _near(sample, drive)) >= LAS.least_compared and values.min() < values.max()}
     brightest = max(usual, key=lambda path: usual[path], default="")
     factors: dict[str, int] = {}
     other: list[str] = []
@@ -242,6 +245,14 @@ def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wa
         note = (f"The intensities of {len(factors)} of {len(files)} files have fewer bits than those of the others, such as {path}: they were "
                 f"multiplied by {factor}, so that all have one scale.")
     return [replace(file, brightness=factors.get(file.path, 1)) for file in files], note
+
+
+def _near(sample, drive):
+    """The intensities above 0 of the points of a FileSample near the drive; of all points where that is None."""
+    near = sample.intensity > 0
+    if drive is not None:
+        near &= np.isfinite(cKDTree(drive).query(sample.places, distance_upper_bound=LAS.near_drive)[0])
+    return sample.intensity[near]
 
 
 def _fields_of_intensity(samples):

@@ -18,10 +18,11 @@ from .reader import CloudHeader, read_blocks
 
 @dataclass(frozen=True)
 class FileSample:
-    """N points of a file: (N, 3) int64 places as they are stored, (N,) uint16 intensities, and (N,) extra fields with one number a point."""
+    """N points of a file: (N, 3) int64 places as stored, (N, 2) m on the map, (N,) uint16 intensities, (N,) extra fields with one number a point."""
 
     file: CloudHeader
     raw: np.ndarray
+    places: np.ndarray
     intensity: np.ndarray
     fields: dict[str, np.ndarray]
 
@@ -39,16 +40,16 @@ def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
             places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
             starts = sorted({reader.chunk_start(file, row) for row in places})
             parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
-            raw, intensity = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-            samples.append(FileSample(file, raw, intensity, {name: np.concatenate([part[2][name] for part in parts]) for name in parts[0][2]}))
+            values = (np.concatenate([part[k] for part in parts]) for k in range(3))
+            samples.append(FileSample(file, *values, {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}))
     return samples
 
 
 def _sample(points):
-    """Stored places, intensities and extra fields of points, which the next to be read overwrite."""
+    """Places as stored and on the map, intensities and extra fields of points, which the next to be read overwrite."""
     one_number = [info.name for info in points.point_format.extra_dimensions if info.num_elements == 1]
-    return (np.stack([np.array(points.array[name], np.int64) for name in "XYZ"], axis=1), np.array(points.array["intensity"]),
-            {name: np.array(points[name], float) for name in one_number})
+    return (np.stack([np.array(points.array[name], np.int64) for name in "XYZ"], axis=1), np.stack([points["x"], points["y"]], axis=1),
+            np.array(points.array["intensity"]), {name: np.array(points[name], float) for name in one_number})
 
 
 def _step(values):

@@ -84,3 +84,13 @@ def test_a_line_leads_over_an_area_that_lies_on_it_and_not_past_one_that_lies_as
     gap = (lines.s > 48.0) & (lines.s < 72.0)
     centre, = (row for row in range(3) if abs(np.nanmedian(found[row, :])) < 0.1)
     assert np.isfinite(found[centre, :][gap]).all() == leads
+
+
+def test_a_dashed_line_does_not_go_on_by_a_gap_over_the_hatched_area_that_it_ends_at():
+    street = Street(vehicle=0.0).paint(3.5, kind="edge").paint(-3.5, kind="edge").paint(0.0, 5.0, 46.0, kind="centre", pattern="dashed")
+    lines = sections_of_lines(PaintedLines.from_features(street.lines, street.frame))[0]
+    centre, = (row for row in range(3) if abs(np.nanmedian(lines.d[row, :])) < 0.1)
+    markings = painted(street, [(s, s + 0.5, -0.5, 0.5, "hatch") for s in np.arange(47.0, 73.0, 1.5)])
+    ends = [np.nanmax(np.where(np.isfinite(gather_boundaries(lines, hatching=area).d[centre, :]), lines.s, np.nan))
+            for area in (None, borders_of_hatching(markings, street.frame, 0, lines.s))]
+    assert ends[0] > 53.0 and ends[1] < 48.0

@@ -88,6 +88,13 @@ def test_between_two_junctions_a_short_double_line_keeps_both_its_lines_though_o
     assert len({row["line"] for row in ragged.rows}) == 1
 
 
+def test_where_one_line_of_a_double_goes_on_as_dashes_it_is_no_double_line_any_more():
+    street = ClusteredStreet().paint(0, 70, 0.0, kind="centre").paint(0, 70, 0.3, kind="centre").dashes(3.0, 6.0, 0.0, first=76.0)
+    lines = street.paint(0, 120, 4.5, kind="edge").lines()
+    assert sorted(set(told(lines, "pattern"))) == [("dashed",), ("double-solid",), ("solid",)]
+    assert max(row["end_m"] for _, row in lines if row["pattern"] == "double-solid") == pytest.approx(70 * 144 / 140, abs=2.0)
+
+
 def test_a_double_line_clustered_as_one_stays_two():
     street = ClusteredStreet()
     street.paint(0, 120, 0.15, kind="hatch", use="other")

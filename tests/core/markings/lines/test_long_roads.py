@@ -41,7 +41,7 @@ def found_in(blocks):
 
 def test_two_streets_end_to_end_give_the_lines_of_each():
     def stretches(blocks):
-        return np.array(sorted((*one.span, np.median(one.line.places[1]), one.double) for one in found_in(blocks)))
+        return np.array(sorted((*one.span, np.median(one.line.places[1]), "double" in one.pieces[0].pattern) for one in found_in(blocks)))
 
     one, two = stretches(1), stretches(2)
     assert len(one) == 5 and one[:, 3].sum() == 2   # without the border of the hatched area and the single dash

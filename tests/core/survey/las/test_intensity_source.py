@@ -142,10 +142,11 @@ def test_a_scale_of_decimetres_is_told(tmp_path, scale, says):
     assert says in told and bool(told) == bool(says)
 
 
-def scales(tmp_path, **intensities):
-    """({name: factor} of files with these intensities, and what is said of them)."""
-    files = read_headers([cloud(tmp_path / f"{name}.laz", np.clip(np.rint(values), 0, 65535)) for name, values in intensities.items()])
-    scaled, note = in_one_scale(files, sample_files(files), "intensity")
+def scales(tmp_path, drive=None, aside=None, **intensities):
+    """({name: factor} of files with these intensities, and what is said of them); `aside`: m that points lie beside x = 500 km, by their file."""
+    files = read_headers([cloud(tmp_path / f"{name}.laz", np.clip(np.rint(values), 0, 65535), **({"x": 500_000.0 + aside[name]} if aside else {}))
+                          for name, values in intensities.items()])
+    scaled, note = in_one_scale(files, sample_files(files), "intensity", drive)
     return {Path(file.path).stem: file.brightness for file in scaled}, note
 
 
@@ -160,6 +161,30 @@ def test_a_file_with_fewer_bits_than_the_others_is_brought_to_their_scale(tmp_pa
 def test_files_over_darker_ground_have_the_same_scale(tmp_path):
     factors, note = scales(tmp_path, road=20_000 * REFLECTANCE, dark=6000 * REFLECTANCE, bright=30_000 * REFLECTANCE)
     assert set(factors.values()) == {1} and note == ""
+
+
+DRIVE = np.c_[np.full(1000, 500_000.0), 5_800_000 + np.arange(1000.0)]
+
+
+@pytest.mark.parametrize("weaker", [10, 20])
+def test_a_tile_that_the_scanners_saw_from_afar_keeps_its_scale(tmp_path, weaker):
+    """Ground at 15 m returns a tenth of what it returns at 3 m, and at a flatter angle less."""
+    near, far = RNG.uniform(-5, 5, COUNT), RNG.uniform(15, 25, COUNT)
+    factors, note = scales(tmp_path, DRIVE, dict(near=near, far=far), near=20_000 * REFLECTANCE, far=20_000 / weaker * REFLECTANCE)
+    assert set(factors.values()) == {1} and note == ""
+
+
+def test_a_tile_of_which_only_a_dark_corner_reaches_the_drive_keeps_its_scale(tmp_path):
+    places = dict(whole=RNG.uniform(-5, 5, COUNT), corner=np.where(np.arange(COUNT) < 70, 5.0, 20.0))
+    factors, note = scales(tmp_path, DRIVE, places, whole=20_000 * REFLECTANCE, corner=1000 * REFLECTANCE)
+    assert set(factors.values()) == {1} and note == ""
+
+
+def test_of_a_tile_with_fewer_bits_points_near_the_drive_show_it(tmp_path):
+    near, mixed = RNG.uniform(-5, 5, COUNT), np.where(np.arange(COUNT) % 2 == 0, 20.0, 3.0)
+    factors, _ = scales(tmp_path, DRIVE, dict(whole=near, few=mixed), whole=20_000 * REFLECTANCE,
+                        few=np.floor(np.where(mixed > 10, 2000, 20_000) * REFLECTANCE / 16))
+    assert factors == {"whole": 1, "few": 16}
 
 
 def test_another_scale_that_no_number_of_bits_explains_is_told(tmp_path):
