@@ -331,6 +331,7 @@ class _DrivingLines(_LineKind):
     def __init__(self, frame: RoadFrame, known: np.ndarray, lane_width: float):
         super().__init__(frame, known)
         self.lane_width = lane_width
+        self.by_correction: dict[int, dict[str, Any]] = {}   # what was drawn, by the id of its correction, whatever became of it afterwards
 
     def accepted(self, piece):
         return dict(super().accepted(piece), confidence=SURE, other="")
@@ -344,7 +345,8 @@ class _DrivingLines(_LineKind):
         fit = fit_curve(places[:, 0], places[:, 1])
         piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, other="", curve=fit.curve, rmse=np.nan,
                      sigma=np.nan, offset=correction.offset, places=places, design_speed=None)
-        return self.with_stations(dict(piece, drawn_by=correction), places)
+        self.by_correction[id(correction)] = piece = self.with_stations(piece, places)
+        return piece
 
 
 class _Lanes(_LineKind):
@@ -352,9 +354,9 @@ class _Lanes(_LineKind):
 
     reach, key = LANE_REACH, "columns"
 
-    def __init__(self, frame: RoadFrame, known: np.ndarray, lines: list[dict[str, Any]]):
+    def __init__(self, frame: RoadFrame, known: np.ndarray, lines: dict[int, dict[str, Any]]):
         super().__init__(frame, known)
-        self.lines = lines   # driving lines, already corrected: what was drawn has its lane and width there
+        self.lines = lines   # driving lines that were drawn, by the id of the correction: they have its lane and width
 
     def with_columns(self, piece, columns):
         return dict(super().with_columns(piece, columns), changed=True)
@@ -363,7 +365,7 @@ class _Lanes(_LineKind):
         return dict(super().accepted(piece), confidence=SURE, other="", changed=True)
 
     def drawn(self, correction, places, like, pieces):
-        line = next(candidate for candidate in self.lines if candidate.get("drawn_by") is correction)
+        line = self.lines[id(correction)]
         middle = line["places"]
         way = np.gradient(middle[:, :2], axis=0)
         left = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None] * line["width"] / 2
@@ -393,10 +395,11 @@ def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, fr
                         for part in (_taken(correction, before, frame) if correction.action == "take" else [correction])]
     corrections.matched |= {correction.row for correction in corrections.of("lane")
                             if correction.action == "take" and correction.on_a_road and not correction.lanes}
-    rows, of_lines = apply_corrections(_DrivingLines(frame, known, width), before, lane_corrections)
+    kind = _DrivingLines(frame, known, width)
+    rows, of_lines = apply_corrections(kind, before, lane_corrections)
     # the area of a lane is drawn about its driving line
-    lane_corrections = [correction for correction in lane_corrections if not correction.draws or correction.row in of_lines]
-    areas, of_lanes = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), lane_corrections)
+    lane_corrections = [correction for correction in lane_corrections if not correction.draws or id(correction) in kind.by_correction]
+    areas, of_lanes = apply_corrections(_Lanes(frame, known, kind.by_correction), _rows_of_lanes(lanes), lane_corrections)
     corrections.matched |= of_lines | of_lanes
     if of_lines:
         lines, elements = DrivingLines.of_pieces(rows, lines.crs), _remaining(elements, before, rows)

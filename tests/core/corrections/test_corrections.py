@@ -273,6 +273,17 @@ def test_a_lane_is_drawn_as_it_is_driven_and_has_the_width_of_the_others(way):
     assert lanes.lane[k] == 3 and lanes.lane_id[k] == "0.3.1"
 
 
+def test_a_lane_that_was_drawn_can_be_moved_and_deleted_by_later_rows():
+    street, made = two_way()
+    drawn, moved, gone = ("draw", "lane", along(20, 90, 5.3)), ("move", "lane", along(20, 90, 5.9)), ("delete", "lane", along(20, 90, 5.9))
+    lines, _, lanes, corrections = corrected_lanes(street, made, drawn, moved)
+    _, _, at_once, _ = corrected_lanes(street, made, ("draw", "lane", along(20, 90, 5.9)))
+    assert not corrections.unmatched and np.count_nonzero(lines.status == "drawn") == 1
+    np.testing.assert_allclose(*(layer.borders(int(np.flatnonzero(layer.status == "drawn")[0])) for layer in (lanes, at_once)), atol=1e-6)
+    lines, _, lanes, corrections = corrected_lanes(street, made, drawn, moved, gone)
+    assert not corrections.unmatched and "drawn" not in [*lines.status, *lanes.status] and len(lines) == len(lanes) == 2
+
+
 def test_a_row_that_says_that_something_was_seen_asks_for_nothing():
     rows = corrections_from_features(layer_of(("seen", "surface", along(0, 20, 0)), ("delete", "edge", along(0, 20, 3))), Street().frame).rows
     assert [(row.row, row.action) for row in rows] == [(2, "delete")], "rows keep their numbers"
