@@ -102,7 +102,7 @@ def _with_wider_profiles(steps, lines, section, settings, density):
     """Also the steps that more and more profiles together show, each where fewer of them have too few points and show none."""
     together = 1
     for reach in PROFILE.wider_profiles:
-        wide = widened(lines, reach, settings.layer_jump, density * together < CURBS.thin_density).part(*section)
+        wide = widened(lines, reach, settings.layer_jump, density * together < CURBS.curb_density).part(*section)
         together = 2 * reach + 1
         more = find_steps(wide, CURBS.low_curb_share * settings.limits.least_height, settings.max_height, PROFILE.least_sharpness)
         off = more.s - (more.profile + 0.5) * lines.width
