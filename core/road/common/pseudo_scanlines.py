@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from ...common.arrays import order_by
 from ..weights import CURBS
@@ -140,13 +139,12 @@ def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jum
 
 
 def widened(lines: PseudoScanLines, reach: int, layer_jump: float, wanted: np.ndarray) -> PseudoScanLines:
-    """The same profiles of the (P, C) wanted cells alone, each with the points of as many more, `reach`, on either side of it."""
-    cells, place = lines.shape[1], _places(lines)
-    near = np.flatnonzero(maximum_filter1d(wanted, 2 * reach + 1, axis=0).ravel()[place])
-    place = (place[near] + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
-    inside = np.flatnonzero((place >= 0) & (place < wanted.size))
-    inside = inside[wanted.ravel()[place[inside]]]
-    indices = near[inside % max(len(near), 1)]
+    """The same profiles of the (C,) wanted cells alone, each with the points of as many more, `reach`, on either side of it."""
+    (rows, cells), place = lines.shape, _places(lines)
+    few = np.flatnonzero(wanted[place % cells])
+    place = (place[few] + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
+    inside = np.flatnonzero((place >= 0) & (place < rows * cells))
+    indices = np.tile(few, 2 * reach + 1)[inside]
     return replace(_of_points(lines, indices, place[inside], layer_jump), noise=lines.noise, spread=lines.spread)
 
 

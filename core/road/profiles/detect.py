@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import uniform_filter
+from scipy.ndimage import uniform_filter1d
 
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
@@ -58,7 +58,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
     density: dict[str, Any] = {}
     for side, _, _, lines in profiles:
-        density[side] = np.maximum(density.get(side, 0.0), _density(lines))
+        density[side] = np.maximum(density.get(side, 0.0), _density(lines.part(*section)))
     # averages need every point
     if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
         profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
@@ -73,7 +73,7 @@ def _steps_by_noise(lines, section, settings, overgrown, density):
     """Steps of a section's profiles: on each profile alone, averaged with its neighbours where noise would hide a curb, or in wider ones.
 
     overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
-    density : (P, C) points per m² about each cell, of the pass that has most: where they are few, more profiles are looked at together
+    density : (C,) points per m² about each cell, of the pass that has most: where they are few, more profiles are looked at together
     """
     section_lines = lines.part(*section)
     limits = settings.limits
@@ -94,9 +94,8 @@ def _steps_by_noise(lines, section, settings, overgrown, density):
 
 
 def _density(lines):
-    """(P, C) points per m² of ground about each cell, over as many profiles as are looked at together at most."""
-    size = 2 * max(PROFILE.wider_profiles) + 1, round(CURBS.curb_width / lines.spacing)
-    return uniform_filter(lines.count.astype(float), size, mode="nearest") / (lines.width * lines.spacing)
+    """(C,) points per m² of ground about each cell."""
+    return uniform_filter1d(lines.count.mean(axis=0), round(CURBS.curb_width / lines.spacing), mode="nearest") / (lines.width * lines.spacing)
 
 
 def _with_wider_profiles(steps, lines, section, settings, density):

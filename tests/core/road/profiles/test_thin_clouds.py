@@ -9,11 +9,11 @@ from road_layers import detect_curbs
 PER_AREA = 12.0   # points per square metre
 
 
-def thin(points, seed=1, beyond=0.0, dense_until=-np.inf):
-    """A few points of each square metre of a street, `beyond` so many metres from its middle and from the station `dense_until` on."""
+def thin(points, seed=1, beyond=0.0):
+    """A few points of each square metre of a street, `beyond` so many metres from its middle."""
     x, y = points[:2]
     area = np.ptp(x) * np.ptp(y)
-    kept = (np.random.default_rng(seed).random(len(x)) < PER_AREA * area / len(x)) | (np.abs(y) < beyond) | (x < dense_until)
+    kept = (np.random.default_rng(seed).random(len(x)) < PER_AREA * area / len(x)) | (np.abs(y) < beyond)
     return tuple(column[kept] for column in points)
 
 
@@ -26,13 +26,6 @@ def test_a_dozen_points_per_square_metre_show_both_curbs_to_their_ends_however_m
         assert len(np.unique(np.floor(points[:, 3] / 2))) >= 0.8 * streets.LENGTH / 2
         np.testing.assert_allclose(np.median(points[:, 1]), offset, atol=0.02)
         np.testing.assert_allclose(points[:, 1], offset, atol=0.10)
-
-
-@pytest.mark.parametrize("station", [27.0, 30.0, 33.0])
-def test_a_street_whose_points_become_few_at_some_station_has_curbs_all_along_wherever_that_is(station):
-    curbs = detect_curbs(survey_of(thin(street(curb=0.10), dense_until=station)))
-    for side in ("left", "right"):
-        assert len(np.unique(np.floor(measured(curbs, side)[:, 3] / 2))) >= 0.9 * streets.LENGTH / 2
 
 
 def test_where_the_curb_is_open_a_thin_cloud_shows_none():
