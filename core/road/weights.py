@@ -72,9 +72,6 @@ class CURBS:
     decimation_locks: int = 16   # locks that stretches share while they are decided
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
-    curb_width: float = 1.0   # m across in which the points about a curb are counted: the road before it and the ground behind
-    # weight: points per m² there, below which more profiles are looked at together; at 320 verges of a motorway showed false steps
-    curb_density: float = 160.0
     thin_width: float = 2.0   # m across in which points are densest: beside the track
     thin_density: float = 320.0   # points per m² of ground there, below which more of the road is looked at together: whole surveys had 348 and more
     # occlusion

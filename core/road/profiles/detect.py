@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
@@ -23,6 +22,7 @@ from ..common.occlusion import OcclusionGrid
 from ..common.pseudo_scanlines import widened
 from ..common.side_curbs import Search, Section, merged_passes
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
+from ..surface.ground_grid import is_thin
 from ..weights import CURBS, PROFILE
 from .steps import beside, find_averaged_steps, find_steps
 
@@ -41,7 +41,7 @@ def profiles_of(decimation: PointDecimation, settings: CurbSettings) -> Search:
 
 
 def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
-    """The phase of profiles: steps in one section of a road, where the scanner is noisy or points are few on several profiles together.
+    """The phase of profiles: steps in one section of a road, where the scanner is noisy or the cloud thin on several profiles together.
 
     Returns
         steps : side -> CurbSteps, passes merged
@@ -56,31 +56,29 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
-    density: dict[str, Any] = {}
-    for side, _, _, lines in profiles:
-        density[side] = np.maximum(density.get(side, 0.0), _density(lines.part(*section)))
+    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing)}
     # averages need every point
     if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
         profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
     for side, _, (u, s, h), lines in profiles:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
-        steps = _steps_by_noise(lines, section, settings, limit is None, density[side])
+        steps = _steps_by_noise(lines, section, settings, limit is None, side not in full)
         steps_by_side[side].append(steps[steps.u > tracks[side](steps.s) + PROFILE.min_track_distance])
     return {side: merged_passes(steps) for side, steps in steps_by_side.items()}, occlusion
 
 
-def _steps_by_noise(lines, section, settings, overgrown, density):
+def _steps_by_noise(lines, section, settings, overgrown, thin):
     """Steps of a section's profiles: on each profile alone, averaged with its neighbours where noise would hide a curb, or in wider ones.
 
     overgrown : is it the scanner that is noisy, so that curbs before plants are looked for, and not a meadow that is rough?
-    density : (C,) points per m² about each cell, of the pass that has most: where they are few, more profiles are looked at together
+    thin : has even the road beside the track so few points that several profiles must be looked at together?
     """
     section_lines = lines.part(*section)
     limits = settings.limits
     noisy = section_lines.spread > CURBS.noisy_share * limits.clear_height
     steps = find_steps(section_lines, CURBS.low_curb_share * limits.least_height, settings.max_height)
-    if not noisy.all():
-        steps = _with_wider_profiles(steps, lines, section, settings, density)
+    if thin and not noisy.all():
+        steps = _with_wider_profiles(steps, lines, section, settings)
     if not noisy.any():
         return steps
     rows, around, parts = np.flatnonzero(noisy), section[0] - lines.first, [steps[~noisy[steps.profile - section[0]]]]
@@ -93,22 +91,15 @@ def _steps_by_noise(lines, section, settings, overgrown, density):
     return CurbSteps.join(parts)
 
 
-def _density(lines):
-    """(C,) points per m² of ground about each cell."""
-    return uniform_filter1d(lines.count.mean(axis=0), round(CURBS.curb_width / lines.spacing), mode="nearest") / (lines.width * lines.spacing)
-
-
-def _with_wider_profiles(steps, lines, section, settings, density):
-    """Also the steps that more and more profiles together show, each where fewer of them have too few points and show none."""
-    together = 1
+def _with_wider_profiles(steps, lines, section, settings):
+    """Also the steps that more and more profiles together show, each where fewer of them show none."""
     for reach in PROFILE.wider_profiles:
-        wide = widened(lines, reach, settings.layer_jump, density * together < CURBS.curb_density).part(*section)
-        together = 2 * reach + 1
-        more = find_steps(wide, CURBS.low_curb_share * settings.limits.least_height, settings.max_height, PROFILE.least_sharpness)
-        off = more.s - (more.profile + 0.5) * lines.width
+        more = find_steps(widened(lines, reach, settings.layer_jump).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+                          settings.max_height, PROFILE.least_sharpness)
+        off, count = more.s - (more.profile + 0.5) * lines.width, 2 * reach + 1
         # a face in one half of a profile alone begins or ends there
-        whole = (more.behind >= PROFILE.least_behind) & (np.abs(off) <= 0.25 * together * lines.width)
-        more = replace(more, s=more.s - off, u=more.u - more.skew * off, support=np.maximum(more.support // together, 1))[whole]
+        whole = (more.behind >= PROFILE.least_behind) & (np.abs(off) <= 0.25 * count * lines.width)
+        more = replace(more, s=more.s - off, u=more.u - more.skew * off, support=np.maximum(more.support // count, 1))[whole]
         steps = CurbSteps.join([steps, more[~beside(more, steps)]])
     return steps
 

