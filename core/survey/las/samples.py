@@ -41,7 +41,8 @@ def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
             starts = sorted({reader.chunk_start(file, row) for row in rows})
             parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
             raw, places, intensity = (np.concatenate([part[k] for part in parts]) for k in range(3))
-            samples.append(FileSample(file, raw, places, intensity, {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}))
+            fields = {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}
+            samples.append(FileSample(file, raw, places, intensity, fields))
     return samples
 
 
