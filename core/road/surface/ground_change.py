@@ -271,9 +271,9 @@ def _walk(cells, base, columns, start, noise, height, ground):
         if k % step == step - 1:
             check_cancelled()
         predicted = z + tilt * (0.5 * SURFACE.column_width if k == 0 else SURFACE.column_width)
-        measured, count = (cells.height[:, pair] - base[:, None]).T, np.fmax(cells.count[:, pair], 0.0).T
+        measured, count = (cells.height[:, pair] - base[:, None]).T, np.nan_to_num(cells.count[:, pair]).T
         off = measured - predicted
-        tolerance = SURFACE.max_height_deviation + SURFACE.noise_factor * noise / np.sqrt(np.minimum(np.maximum(count, 1.0), 25.0)) \
+        tolerance = SURFACE.max_height_deviation + SURFACE.noise_factor * noise / np.sqrt(np.clip(count, 1.0, 25.0)) \
             + np.minimum(SURFACE.tolerance_gain * np.maximum(skipped - 0.5, 0.0), SURFACE.max_tolerance_gain)
         near = np.abs(off) < tolerance   # False where there is no ground
         off = np.where(near, off, 0.0)
@@ -285,8 +285,7 @@ def _walk(cells, base, columns, start, noise, height, ground):
         certainty = np.minimum(total / 3.0, 1.0)
         # behind a gap the measured height replaces the prediction
         z = predicted + np.where(skipped > 0.5, 1.0, SURFACE.height_gain) * certainty * around
-        tilt = tilt + SURFACE.tilt_gain * certainty * around / SURFACE.column_width
-        tilt = np.minimum(np.maximum(tilt, -SURFACE.max_cross_slope), SURFACE.max_cross_slope)
+        tilt = np.clip(tilt + SURFACE.tilt_gain * certainty * around / SURFACE.column_width, -SURFACE.max_cross_slope, SURFACE.max_cross_slope)
         tilt = gaussian_filter1d(tilt, sigma, mode="nearest")
         skipped = np.where(certainty > 0.5, 0.0, skipped + SURFACE.column_width)
         height[:, pair] = (z + base).T
