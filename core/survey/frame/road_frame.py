@@ -535,7 +535,7 @@ def _make_pass(road, time, x, y, z):
 
 def _longest_run(s):
     """(first, end) of the longest run of known stations without jumps; None where none is known."""
-    broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
-    cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
+    unknown = ~np.isfinite(s)
+    cuts = np.union1d(np.r_[0, np.flatnonzero(unknown[1:] | unknown[:-1]) + 1, len(s)], _leaps(s))
     runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
     return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None

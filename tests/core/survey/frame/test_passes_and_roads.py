@@ -50,7 +50,7 @@ def test_a_roundabout_driven_straight_through_is_one_road():
     assert len(frame.roads) == len(frame.passes) == 1
 
 
-@pytest.mark.parametrize("radius", [8, 9, 10])
+@pytest.mark.parametrize("radius", [5, 8, 9, 10])
 def test_who_drives_straight_over_a_small_roundabout_does_not_leap_to_the_arm_that_another_drive_came_from(radius):
     """The first drive crosses from the west to the east, the second one comes from the south and goes round to the west."""
     def ring(first, last):
@@ -69,7 +69,7 @@ def test_who_drives_straight_over_a_small_roundabout_does_not_leap_to_the_arm_th
     round_it = smooth(np.concatenate([arm(270, 3.0), ring(285, 500), arm(180, -3.0)[::-1]]))
     frame = build_frame(joined(drive(over, speed=5), drive(round_it, speed=5, start=2000.0)))
     assert max(np.abs(np.diff(p.s)).max() for p in frame.passes) < 1.0
-    assert sum(np.hypot(np.diff(p.x), np.diff(p.y)).sum() for p in frame.passes) > 0.98 * 0.1 * (len(over) + len(round_it)), "all of both drives"
+    assert sum(np.hypot(np.diff(p.x), np.diff(p.y)).sum() for p in frame.passes) > 0.97 * 0.1 * (len(over) + len(round_it)), "all of both drives"
 
 
 @pytest.mark.parametrize("aside, way", [(0.5, 1), (3.5, -1), (-3.5, 1)])
