@@ -80,6 +80,15 @@ def test_a_street_driven_twice_is_one_road_with_two_passes(aside, way):
     np.testing.assert_allclose(frame.passes[1].d, aside, atol=0.01)
 
 
+def test_where_a_pass_in_a_higher_lane_turns_off_the_height_of_the_road_makes_no_step():
+    """On a crossfall the lanes lie 15 cm apart in height; a step of half of that across the road would be a curb."""
+    beside = drive(STREET[:1500] + [0.0, 5.0], start=2000.0, height=2.15)
+    frame = build_frame(joined(drive(STREET), beside))
+    heights = frame.track_height(0, np.arange(0.0, 300.0, 0.25)) + frame.origin[2]
+    assert np.abs(np.diff(heights)).max() < 0.002
+    assert heights[300] == pytest.approx(102.075, abs=0.001) and heights[-1] == pytest.approx(102.0, abs=0.001)
+
+
 def test_a_block_driven_round_twice_gives_two_passes_in_the_same_direction():
     block = chain(ahead(100), bend(10, 90), ahead(60), bend(10, 90), ahead(100), bend(10, 90), ahead(60), bend(10, 90))
     frame = build_frame(drive(np.concatenate([block, block]), speed=5))
