@@ -447,12 +447,16 @@ def _shared_with(road, line, track, moved, rows):
     along = np.isfinite(d) & (turned < FRAME.parallel_angle) & level
     if len(kept) < FRAME.min_shared_length:
         along[:] = 2 * along.sum() > len(along)
-    along = _fill_runs(along, int(FRAME.min_shared_length / 2))
+    shortest = int(FRAME.min_shared_length / 2)
+    along = _fill_runs(along, shortest)
     if not along.all():
-        along = ~_fill_runs(~along, int(FRAME.min_shared_length / 2))
+        along = ~_fill_runs(~along, shortest)
     for i, j in _runs(along):
         if along[i] and not np.nanmedian(np.abs(d[i:j])) <= FRAME.same_carriageway:
             along[i:j] = False
+        elif along[i]:
+            first, last = _without_leaps(s[i:j], shortest, i > 0, j < len(along))
+            along[i:i + first] = along[i + last:j] = False
     return _ranges_of(along, rows, kept, s)
 
 
@@ -471,14 +475,27 @@ def _ranges_of(along, rows, kept, s):
 
 
 def _jumps(s):
-    """Indices at which the station jumps, at least half of `min_shared_length` from the ends and from each other."""
-    rows = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    """Indices at which the station leaps, at least half of `min_shared_length` from the ends and from each other."""
     shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
-    for k in rows:
+    for k in _leaps(s):
         if k - last >= shortest and len(s) - k >= shortest:
             kept.append(int(k))
             last = k
     return kept
+
+
+def _without_leaps(s, shortest, joins, leaves):
+    """(first, end) of a run along a road, without a leap near its beginning, where the drive `joins` the road, or its end, where it `leaves` it.
+
+    On a small roundabout the arms lie side by side, and before the leap the drive is still on another one.
+    """
+    leaps = _leaps(s)
+    return (max(leaps[leaps < shortest], default=0) if joins else 0,
+            min(leaps[leaps > len(s) - shortest], default=len(s)) if leaves else len(s))
+
+
+def _leaps(s):
+    return np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
 
 
 def _runs(mask):
