@@ -132,7 +132,7 @@ def test_a_worker_that_is_killed_while_it_reads_is_replaced_and_nothing_is_lost(
 def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch):
     monkeypatch.setattr(processes._Worker, "answer_to", lambda worker, task: worker.process.kill())
     executor = WorkerProcesses(python, 1)
-    with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz], points [\d,]+ to [\d,]+.*fewer workers"):
+    with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz].*fewer workers"):
         opened(street, executor)
     assert not executor.folder.exists()
 
@@ -190,13 +190,13 @@ def read_parts(work):
 def test_a_run_that_was_ended_while_it_read_goes_on_where_it_was(street, by_threads, tmp_path, workers):
     work = tmp_path / "work"
     with pytest.raises(Cancelled):
-        opened(street, progress=StopsReading(work, 3), work_folder=str(work), workers=workers)
+        opened(street, progress=StopsReading(work, 5), work_folder=str(work), workers=workers)
     done = read_parts(work)
     heard = Heard()
     assert opened(street, progress=heard, work_folder=str(work), workers=workers) == by_threads
     now = read_parts(work)
-    assert len(done) >= 3 and len(now) > len(done) and all(now[path] == file for path, file in done.items())
-    assert heard.says(f"{len(done) - 1} of ")   # the other file holds what all parts depend on
+    assert len(done) >= 5 and len(now) > len(done) and all(now[path] == file for path, file in done.items())
+    assert heard.says(f"{len(done) - 3} of ")   # the other files hold what all parts depend on, and what two clouds showed at a look
 
 
 def test_a_work_folder_keeps_the_points_and_nothing_unfinished(street, by_threads, tmp_path):
@@ -256,9 +256,10 @@ class Halving(Threads):
         self.folder, self.halved = folder, 0
 
     def run(self, phase, items, progress=Progress(), keep=()):
-        for *place, first, end in items:
-            if phase.join is None or end - first < 2:
-                yield phase.result((*place, first, end))
+        for item in items:
+            *place, first, end = item if phase.join else (0, 0)
+            if end - first < 2:
+                yield phase.result(item)
                 continue
             self.halved += 1
             middle = (first + end) // 2
