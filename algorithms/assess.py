@@ -152,7 +152,7 @@ class AssessBoundaries(Algorithm):
             result, reference = (choose(layer, progress.warn) for layer in (result, reference))
         result, reference = products.assess.layers.edges_that_compare(result, reference, call.value("EDGES"), progress.warn)
         judged, excluded = (reference.subset([(why is None) == is_judged for why in reference.excluded]) for is_judged in (True, False))
-        products.assess.layers.check_reference(judged, result, frame, area, settings.corridor, progress.warn)
+        products.assess.layers.check_reference(judged, result, frame, area, progress.warn, settings.corridor)
         progress.report(0.4)
         accuracy = products.assess.lines.assess_boundaries(
             result.geometries, judged.geometries, settings, frame, excluded.geometries, excluded.excluded, area, judged.column("side"),
@@ -277,7 +277,7 @@ class AssessDrivingLines(Algorithm):
         settings = self._settings(call)
         result, reference, crs = compared_lines(layer_of(call, "INPUT"), layer_of(call, "REFERENCE"), progress)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, progress.warn)
-        products.assess.layers.check_reference(reference, result, frame, area, warn=progress.warn)
+        products.assess.layers.check_reference(reference, result, frame, area, progress.warn)
         progress.report(0.3)
         match = products.assess.lines.match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
         accuracy = match.accuracy(settings.tolerances)

@@ -52,7 +52,7 @@ class IntensityImage(Algorithm):
     def work(self, call, progress):
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         path = call.new_file("INTENSITY_IMAGE")
-        core.intensity.image.write_intensity_image(road_points, path, call.settings(IMAGE_SETTINGS), progress.part(0.2, 0.9))
+        core.intensity.image.make_intensity_image(road_points, call.settings(IMAGE_SETTINGS), progress.part(0.2, 0.9), path).close()
         if call.wants("DISPLAY_IMAGE"):
             core.io.geotiff.write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))
 

@@ -92,8 +92,8 @@ class PointCloudsWidget(QWidget):
 
     changed = pyqtSignal()
 
-    def __init__(self, parent: QWidget | None = None, describes: bool = True):
-        super().__init__(parent)
+    def __init__(self, describes: bool = True):
+        super().__init__()
         self.names = DropLine(self, clearButtonEnabled=True, dropped=self.add, textChanged=self._tell, editingFinished=self._remember_folder,
                               placeholderText=tr("Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here"))
         self.names.textChanged.connect(self.changed)
@@ -385,13 +385,10 @@ ROLE_TITLES = {"": tr("left out"), "time": tr("time"), "x": tr("x (east)"), "y":
 class ColumnsWidget(QWidget):
     """A line with the roles, the first rows of the file below boxes that set them, and what was understood."""
 
-    changed = pyqtSignal()
-
-    def __init__(self, parent: QWidget | None = None):
-        super().__init__(parent)
+    def __init__(self):
+        super().__init__()
         self.path = ""
         self.line = QLineEdit(placeholderText=tr("Recognised from the file"), clearButtonEnabled=True, textChanged=lambda text: self._read())
-        self.line.textChanged.connect(lambda text: self.changed.emit())
         self.table = QTableWidget(editTriggers=QTableWidget.EditTrigger.NoEditTriggers)
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
@@ -403,9 +400,6 @@ class ColumnsWidget(QWidget):
     def value(self) -> str:
         """The roles, as the parameter takes them."""
         return self.line.text().strip()
-
-    def set_value(self, value: str) -> None:
-        self.line.setText(value or "")
 
     def show_file(self, path: str) -> None:
         """Show another file; "" for none. What was assigned belongs to the file before."""
@@ -498,7 +492,8 @@ class ColumnsWrapper(DialogWrapper):
     def createWidget(self, **more):
         whole = self.dialogType == QgsProcessingGui.WidgetType.Standard
         widget = ColumnsWidget() if whole else QLineEdit()
-        (widget.changed if whole else widget.textChanged).connect(self.announce)
+        self.line = widget.line if whole else widget
+        self.line.textChanged.connect(self.announce)
         return widget
 
     def follow(self, value) -> None:
@@ -509,10 +504,7 @@ class ColumnsWrapper(DialogWrapper):
             self.widget.show_file(str(path) if path is not None and path.is_file() else "")
 
     def setValue(self, value):
-        if isinstance(self.widget, ColumnsWidget):
-            self.widget.set_value(value or "")
-        else:
-            self.widget.setText(value or "")
+        self.line.setText(value or "")
 
     def value(self):
-        return self.widget.value() if isinstance(self.widget, ColumnsWidget) else self.widget.text()
+        return self.line.text().strip()

@@ -222,10 +222,33 @@ class _Piece:
 def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = ImageSettings(), progress: Progress = Progress(),
                          path: str | PathLike | None = None, before: TiledImage | None = None,
                          pieces: Sequence[_Piece] | None = None) -> TiledImage:
-    """The image of `write_intensity_image`, to be read at once like an IntensityImage, and in a GeoTIFF too where a path is given.
+    """Interpolate the intensity of road points into an image, to be read at once like an IntensityImage.
 
+    The value G of a cell follows two rules [1]_: a nearer point weighs more, and a brighter one::
+
+        G = sum(w I) / sum(w),  w = (1 - beta + beta * b) / (distance + 1 mm)**power
+        b = clip((I - P1) / (P99 - P1), 0, 1)
+
+    P1 and P99 are percentiles over 20 m of road. Where a cell holds six points or more, an evenly
+    spread share of at least three per cell stands for all of them on cells farther than the next.
+    The corrected intensity is used where there is one. Cells are multiples of the cell size in map
+    coordinates, so images of one place lie cell on cell. A cell without a point within the
+    radius has no data.
+
+    path : of a float32 GeoTIFF that is written too, and appears when it is complete; None for none
     before : image of other points of the survey, whose tiles are taken over where they are the same; it is of no use any more
     pieces : result of `pieces_of_image`, which an earlier stage looked for; None to look here
+
+    Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
+
+    Notes
+    -----
+    With `beta` above 0 bright edges grow by up to half a cell: take widths and
+    centre lines from the points.
+
+    References
+    ----------
+    .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
     if pieces is None:
         pieces, = in_step([pieces_of_image(road_points, settings)], road_points.executor, progress.part(0.0, 0.3))
@@ -253,37 +276,6 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
                     file.write(column, row, np.where(np.isnan(pixels), np.float32(NODATA), pixels), whole=True)
     progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {grid.cell:g} m.")
     return image
-
-
-def write_intensity_image(road_points: RoadPoints, path: str | PathLike, settings: ImageSettings = ImageSettings(),
-                          progress: Progress = Progress()) -> None:
-    """Interpolate the intensity of road points into a float32 GeoTIFF.
-
-    The value G of a cell follows two rules [1]_: a nearer point weighs more, and a brighter one::
-
-        G = sum(w I) / sum(w),  w = (1 - beta + beta * b) / (distance + 1 mm)**power
-        b = clip((I - P1) / (P99 - P1), 0, 1)
-
-    P1 and P99 are percentiles over 20 m of road. Where a cell holds six points or more, an evenly
-    spread share of at least three per cell stands for all of them on cells farther than the next.
-    The corrected intensity is used where there is one. Cells are multiples of the cell size in map
-    coordinates, so images of one place lie cell on cell. A cell without a point within the
-    radius has no data.
-
-    path : of the GeoTIFF; it appears when it is complete
-
-    Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
-
-    Notes
-    -----
-    With `beta` above 0 bright edges grow by up to half a cell: take widths and
-    centre lines from the points.
-
-    References
-    ----------
-    .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
-    """
-    make_intensity_image(road_points, settings, progress, path).close()
 
 
 def check_fits(width: float, height: float, settings: ImageSettings) -> None:

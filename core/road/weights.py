@@ -324,6 +324,8 @@ class RETURN:
     alike_along: float = 0.5   # m along, and
     alike_across: float = 0.1   # m across, within which the errors of a many-beam scanner are alike
     largest_bend: float = 0.25   # 1/m
+    core_share: float = 0.7   # of the width of an island, whose end is averaged: its corners are round
+    end_turns: tuple[float, ...] = tuple(np.radians(np.arange(-18.0, 18.1, 6.0)))   # of that end, from straight across
     meeting_curb_distance: float = 0.25   # m within which a curb that continues has reached another
     leaving_length: float = 1.0   # m from its beginning in which it is near the curb that it continues
     # curbs followed

@@ -27,7 +27,8 @@ class FRAME:
     sparse_track_spacing: float = 2.0   # m between rows: beyond it, chords would cut the bends, so a spline is used
     junction_gap: float = 15.0   # m between the end of one pass and the start of the next that continues the road
     max_lateral_jump: float = 6.0   # m to the side: another lane of the same carriageway
-    lane_blend_length: float = 40.0   # m over which a continuing pass in another lane is blended into the line
+    lane_blend_length: float = 40.0   # m over which a pass in another lane is blended into the line, and into the height of the road
+    least_share: float = 0.01   # m of these that a pass counts for at its very end
     max_lane_distance: float = 15.0   # m between two passes over one carriageway at most
     min_shared_length: float = 20.0   # m of road that two passes over it must share
     sigma_stretch: float = 10.0   # m of road of which the mean is kept, and the least that is distinguished on a line

@@ -178,8 +178,7 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
                 for definition in self.algorithm().parameterDefinitions() if definition.type() in SETTINGS and definition.name() in wrappers}
 
     def save_preset(self, name: str) -> None:
-        kept = presets_of(self.algorithm().name())
-        _keep(self.algorithm().name(), {**kept, name: self.settings()})
+        _keep(self.algorithm().name(), {**presets_of(self.algorithm().name()), name: self.settings()})
 
     def load_preset(self, name: str) -> None:
         """Set what the preset holds; a setting that the algorithm no longer has is passed over."""
@@ -189,9 +188,7 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
         self._say(tr("Preset {name}: {count} settings.").format(name=name, count=len(values)))
 
     def remove_preset(self, name: str) -> None:
-        kept = presets_of(self.algorithm().name())
-        kept.pop(name, None)
-        _keep(self.algorithm().name(), kept)
+        _keep(self.algorithm().name(), {kept: values for kept, values in presets_of(self.algorithm().name()).items() if kept != name})
 
     def _list_presets(self):
         self.presets.clear()

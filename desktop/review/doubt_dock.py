@@ -117,7 +117,8 @@ class DoubtDock(QDockWidget):
         self.note = QLineEdit(placeholderText=tr("Note, kept with the correction"))
         self.accept_button = self._button(tr("Accept"), tr("It is right as it is"), lambda: self.decide("accept"), "A")
         self.delete_button = self._button(tr("Delete"), tr("There is nothing of that kind here"), lambda: self.decide("delete"), "D")
-        self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"), self.begin_move, "M")
+        self.move_button = self._button(tr("Move…"), tr("Draw where it belongs, within 2 m of where it is"),
+                                        lambda: self.begin("move", self.chosen[0].target, self.chosen[0]), "M")
         self.other_button = self._button(tr("Other reading"), tr("Take the second reading of the program, which is almost as likely"),
                                          lambda: self.decide("take"), "O")
         self.pick_button = self._button(tr("Find…"), tr("Click near a curb or painted line that is missing: it is found in the points"),
@@ -125,7 +126,7 @@ class DoubtDock(QDockWidget):
         self.draw_button = self._button(tr("Draw"), tr("Draw what is missing"), lambda: None)
         menu = QMenu(self)
         for target, title in (("edge", tr("Road edge…")), ("marking", tr("Marking line…")), ("lane", tr("Lane, in the direction of travel…"))):
-            menu.addAction(title, lambda target=target: self.begin_draw(target))
+            menu.addAction(title, lambda target=target: self.begin("draw", target))
         self.draw_button.setMenu(menu)
         # short: the widest row takes its width from the map
         self.snap = QCheckBox(tr("Snap to curb and paint"), toolTip=tr("Lay drawn lines onto curbs and paint"), checked=True)
@@ -409,16 +410,11 @@ class DoubtDock(QDockWidget):
         if not left and len(self.places) > 1:
             self.go(self.road_map)
 
-    def begin_draw(self, target: str) -> None:
-        """Let the user draw what is missing."""
-        self._begin("draw", target, None)
+    def begin(self, action: str, target: str, piece: DoubtfulPiece | None = None) -> None:
+        """Let the user draw what is missing, or where a piece belongs; what was begun for the same is gone on with.
 
-    def begin_move(self) -> None:
-        """Let the user draw where the selected piece belongs."""
-        self._begin("move", self.chosen[0].target, self.chosen[0])
-
-    def _begin(self, action, target, piece):
-        """Draw; what was begun for the same is gone on with. The file comes first: who names none has drawn nothing that could be lost."""
+        The file comes first: who names none has drawn nothing that could be lost.
+        """
         if self._layer_to_write() is None:
             return
         if self._pending != (action, target, piece):

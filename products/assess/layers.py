@@ -140,10 +140,6 @@ PAVEMENT, CURBS = "pavement", ("curb", "dropped")   # values of the field `edge`
 TRANSVERSE_KINDS = ("corner", "side_street", "island")  # values of the field `kind` of curbs that do not run along the road
 
 
-def _ignore(text: str) -> None:
-    """A warning that nobody reads."""
-
-
 @dataclass
 class AssessedLayer:
     """A layer with its attributes."""
@@ -201,7 +197,7 @@ def common_crs(layers: Sequence[AssessedLayer]) -> str:
     return ""
 
 
-def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None]) -> AssessedLayer:
     """The layer in a CRS, as it is for ""; without a CRS it is assumed to be in this one, with a warning.
 
     Raises RoadExtractionError if it has no CRS but coordinates in degrees, or cannot be transformed.
@@ -225,7 +221,7 @@ def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore
     return replace(layer, geometries=moved, crs=wkt)
 
 
-def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+def without_stray_vertices(layer: AssessedLayer, warn: Callable[[str], None]) -> AssessedLayer:
     """A layer of lines, m, without the vertices that lie on another continent than most: the work goes with the length of lines."""
     places = shapely.get_coordinates(layer.geometries)
     middle = np.median(places, axis=0) if len(places) else np.zeros(2)
@@ -265,7 +261,7 @@ def _looks_like_degrees(geometries):
     return bool(max(abs(x0), abs(x1)) <= 180 and max(abs(y0), abs(y1)) <= 90 and max(x1 - x0, y1 - y0) < 1.0)
 
 
-def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None]) -> AssessedLayer:
     """The layer without the tops of curbs if it has bottoms too."""
     parts = np.array([str(part).lower() if part is not None else "" for part in layer.column("part")], object)
     if "bottom" not in parts or "top" not in parts:
@@ -274,7 +270,7 @@ def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) ->
     return layer.subset(parts != "top")
 
 
-def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None]) -> AssessedLayer:
     """The layer without corners, side streets and islands, which intervals along a road cannot judge."""
     transverse = np.array([str(kind).lower() in TRANSVERSE_KINDS for kind in layer.column("kind")], bool)
     if not transverse.any() or transverse.all():
@@ -283,8 +279,8 @@ def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ign
     return layer.subset(~transverse)
 
 
-def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: str = "automatic",
-                       warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, AssessedLayer]:
+def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: str,
+                       warn: Callable[[str], None]) -> tuple[AssessedLayer, AssessedLayer]:
     """(the result, the reference) with edges of the same kinds: curbs are not judged by edges of the pavement.
 
     The field `edge`, else `kind`, says what a line is. Edges "all" keeps both layers as they are; "curbs" leaves edges of the pavement out of
@@ -319,8 +315,8 @@ def _length(layer, mask):
     return float(sum(layer.geometries[k].length for k in np.flatnonzero(mask)))
 
 
-def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any = None, area: Any = None, corridor: float = MAX_ROAD_DISTANCE,
-                    warn: Callable[[str], None] = _ignore) -> None:
+def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any, area: Any, warn: Callable[[str], None],
+                    corridor: float = MAX_ROAD_DISTANCE) -> None:
     """Refuse, with RoadExtractionError, reference lines of which none lies in the area, a polygon or None, or within `corridor` metres of the
     trajectory, whose RoadFrame is given or None; warn if the result has no line.
     """
@@ -339,7 +335,7 @@ def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any 
         warn(f"{result.label} has no lines: everything is missed.")
 
 
-def check_marking_reference(reference: AssessedLayer, result: AssessedLayer, area: Any = None, warn: Callable[[str], None] = _ignore) -> None:
+def check_marking_reference(reference: AssessedLayer, result: AssessedLayer, area: Any, warn: Callable[[str], None]) -> None:
     """Refuse, with RoadExtractionError, reference polygons of which none has an area or lies in the area given; warn if the result has none."""
     shapes = np.asarray(reference.geometries, object)
     if not len(shapes) or not (shapely.area(shapes) > 0).any():

@@ -182,8 +182,6 @@ def _runs_back(left, right, border):
 def _check_places(lanes):
     """Refuse two roads at one place; connectors may cross, and bridges."""
     rows = np.flatnonzero(lanes.type == "driving")
-    if not len(rows):
-        return
     shapes, height = areas_of(lanes, rows), np.array([lanes.borders(k)[0][:, 2].mean() for k in rows])
     for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
         a, b = rows[first], rows[second]
@@ -321,8 +319,7 @@ STOP_LINE_HALF = 0.15   # m, half of the breadth of a stop line whose outline is
 
 def stop_lines(markings: Features | None) -> list[np.ndarray]:
     """(2, 3) the middle line of every stop line."""
-    outlines = [_corners(shape) for shape in _shapes(markings, ("stop", "stop_line"))]
-    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in outlines if len(corners)]
+    return [(corners[[0, 1]] + corners[[3, 2]]) / 2 for corners in map(_corners, _shapes(markings, ("stop", "stop_line")))]
 
 
 def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -332,8 +329,6 @@ def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.nda
     crossings = []
     for group in groups + [[whole] for whole in _shapes(markings, ("crosswalk",))]:
         corners = _corners(shapely.unary_union(group)) if len(group) > 1 else _corners(group[0])
-        if not len(corners):
-            continue
         across = np.mean([_long_side(stripe) for stripe in group], axis=0)
         along = corners[1] - corners[0]
         if len(group) > 1 and abs(along[:2] @ across) > abs((corners[2] - corners[1])[:2] @ across):
@@ -343,7 +338,9 @@ def walked_crossings(markings: Features | None) -> list[tuple[np.ndarray, np.nda
 
 
 def _shapes(markings: Features | None, classes: tuple[str, ...]) -> list[Any]:
-    return [geometry for geometry, row in markings or () if geometry is not None and not geometry.is_empty and row.get("class") in classes]
+    """The markings of some classes that have a length and a breadth."""
+    return [geometry for geometry, row in markings or () if geometry is not None and not geometry.is_empty and row.get("class") in classes
+            and shapely.force_2d(geometry).minimum_rotated_rectangle.geom_type == "Polygon"]
 
 
 def _groups(shapes: list[Any]) -> list[list[Any]]:
@@ -356,8 +353,6 @@ def _groups(shapes: list[Any]) -> list[list[Any]]:
 def _corners(shape: Any) -> np.ndarray:
     """(4, 3) corners of the rectangle about a shape, its long side first, counter-clockwise; heights are those of the nearest vertices."""
     rectangle = shapely.force_2d(shape).minimum_rotated_rectangle
-    if rectangle.geom_type != "Polygon":
-        return np.empty((0, 3))
     corners = shapely.get_coordinates(shapely.geometry.polygon.orient(rectangle).exterior)[:4]
     if np.hypot(*(corners[1] - corners[0])) < np.hypot(*(corners[2] - corners[1])):
         corners = corners[[1, 2, 3, 0]]
@@ -368,8 +363,6 @@ def _corners(shape: Any) -> np.ndarray:
 
 def _long_side(shape):
     corners = _corners(shape)
-    if not len(corners):
-        return np.zeros(2)
     side = (corners[1] - corners[0])[:2]
     return side * (1 if side[0] > 0 or side[0] == 0 and side[1] > 0 else -1)
 
@@ -518,8 +511,6 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, apart_f
     places = np.concatenate([np.empty((0, 3)), *rows])
     if apart_from is not None and len(apart_from) and len(places):
         places = places[cKDTree(apart_from).query(places[:, :2])[0] > LEFT_OUT_NEAR]
-    if not len(places) or not middles:
-        return _summary(np.empty(0), places)
     across, _, places = _distances([places], _segments(middles), NEAR_MIDDLE)
     return _summary(across, places)
 

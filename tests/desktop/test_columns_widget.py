@@ -51,7 +51,7 @@ def test_of_a_log_it_is_told_what_was_understood_and_there_is_nothing_to_assign(
 def test_another_file_begins_anew_and_a_layer_has_no_columns(qgis_app, drive, tmp_path):
     widget = ColumnsWidget()
     widget.show_file(drive)
-    widget.set_value("time,y,x,z")
+    widget.line.setText("time,y,x,z")
     other = tmp_path / "other.csv"
     other.write_text("x,y,z\n" + "\n".join(f"{500000 + k},5400000,30" for k in range(20)), encoding="utf-8")
     widget.show_file(str(other))

@@ -98,7 +98,7 @@ def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
     hand = QgsMapToolPan(at_first.iface.mapCanvas())
     at_first.iface.mapCanvas().setMapTool(hand)
     at_first.begin_pick()
-    at_first.begin_draw("edge")
+    at_first.begin("draw", "edge")
     assert at_first.iface.mapCanvas().mapTool() is at_first.tool
     for x in (20.0, 25.0, 31.0):
         at_first.tool.add(QgsPointXY(EAST + x, NORTH + 4))
@@ -129,11 +129,11 @@ def test_a_piece_is_moved_to_a_line_which_takes_two_clicks_and_the_list_says_so(
 
 def test_what_is_drawn_stays_while_the_hand_moves_the_map_and_nothing_covers_the_map(at_first):
     canvas = at_first.iface.mapCanvas()
-    at_first.begin_draw("edge")
+    at_first.begin("draw", "edge")
     assert at_first.iface.messageBar().currentItem() is None and at_first.hint.isVisible()
     at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
     canvas.setMapTool(QgsMapToolPan(canvas))
-    at_first.begin_draw("edge")
+    at_first.begin("draw", "edge")
     at_first.tool.add(QgsPointXY(EAST + 30, NORTH + 4))
     at_first.tool.finish()
     assert [length for *_, length in corrections()] == [pytest.approx(10.0)] and not at_first.hint.isVisible()
@@ -141,7 +141,7 @@ def test_what_is_drawn_stays_while_the_hand_moves_the_map_and_nothing_covers_the
 
 def test_who_names_no_file_for_the_corrections_has_drawn_nothing_yet(at_first):
     at_first.ask_for_file = lambda: ""
-    at_first.begin_draw("edge")
+    at_first.begin("draw", "edge")
     assert at_first.iface.mapCanvas().mapTool() is not at_first.tool
 
 
@@ -318,7 +318,7 @@ def test_a_second_click_on_a_curb_that_was_found_adds_nothing(over_points):
 def test_a_line_drawn_beside_the_curb_is_laid_onto_it_unless_that_is_switched_off(over_points):
     for on, beside in ((True, 0.05), (False, 0.3)):
         over_points.snap.setChecked(on)
-        over_points.begin_draw("edge")
+        over_points.begin("draw", "edge")
         for x in (30, 45):
             over_points.tool.add(QgsPointXY(EAST + x, NORTH + 5.25))
         over_points.tool.finish()

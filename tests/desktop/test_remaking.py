@@ -121,7 +121,7 @@ def test_what_is_corrected_during_a_run_stays_to_be_made_after_it(at_first, runs
 
 
 def test_what_is_being_drawn_stays_when_the_map_comes_that_was_made_meanwhile(at_first):
-    at_first.begin_draw("edge")
+    at_first.begin("draw", "edge")
     at_first.tool.add(QgsPointXY(EAST + 20, NORTH + 4))
     shown, again = [], []
     at_first.shown.connect(shown.append), at_first.made_again.connect(again.append)

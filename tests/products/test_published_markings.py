@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.markings.paint.settings import MarkingSettings
@@ -160,7 +160,7 @@ def test_the_mask_covers_the_paint_in_the_pixels_of_the_image(tmp_path, method):
     line, frame = strip(10, 50, 1.2, 1.35), drive(radius=80.0)
     records = street(frame, [line])
     points = road_points(records, frame)
-    write_intensity_image(points, tmp_path / "image.tif")
+    make_intensity_image(points, path=tmp_path / "image.tif").close()
     image = IntensityImage.open(tmp_path / "image.tif")
     extract_markings(points, image, frame, MarkingSettings(method=ALL_METHODS[method]), mask_path=tmp_path / "mask.tif")
     mask = IntensityImage.open(tmp_path / "mask.tif")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.lines.fit import fit_marking_lines, named_by_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
@@ -50,7 +50,7 @@ def _intensity(w, settings):
 
 def _image(w, settings):
     w.image_path = w.scratch / f"image_{len(list(w.scratch.iterdir()))}.tif"
-    write_intensity_image(w.bright, w.image_path, settings.image)
+    make_intensity_image(w.bright, settings.image, path=w.image_path).close()
 
 
 def _markings(w, settings):

@@ -121,13 +121,13 @@ def scanlines(size):
 
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
-    from lanewright.core.intensity.image import ImageSettings, write_intensity_image
+    from lanewright.core.intensity.image import ImageSettings, make_intensity_image
     from lanewright.core.survey.road_points_las import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)
     for key in points.all_sections():
         points.section(*key)
-    _, seconds = timed(lambda: write_intensity_image(points, target, ImageSettings(beta=0.0)))
+    _, seconds = timed(lambda: make_intensity_image(points, ImageSettings(beta=0.0), path=target).close())
     return dict(seconds, points=len(points))
 
 

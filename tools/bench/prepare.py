@@ -22,7 +22,7 @@ def prepared(name, size):
 
 def prepare(size):
     """Make the files."""
-    from lanewright.core.intensity.image import write_intensity_image
+    from lanewright.core.intensity.image import make_intensity_image
     from lanewright.core.survey.road_points_las import write_road_points
 
     folder = prepared("", size)
@@ -31,7 +31,7 @@ def prepare(size):
     strip = _part(road_points, road_points.window(road_points.roads()[0], *STRIP).records)
     write_road_points(strip, folder / "strip.laz")
     _write_layer(strip, folder / "strip.fgb")
-    write_intensity_image(strip, folder / "strip.tif")
+    make_intensity_image(strip, path=folder / "strip.tif").close()
     paint = _brightest(_road_points("long", size), PAINT[size])
     write_road_points(paint, folder / "paint.laz")
     points = paint.all_points()[np.argsort(paint.all_points().time)]

@@ -307,7 +307,7 @@ def _place_shares(estimate, lanes, chosen, part):
 
     That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it, and of those of its direction
     among them. Of directions the most probable sequences are weighed against each other where the other side of traffic counts too: a road that is
-    one way is the same reading on both.
+    one way is the same reading on both. In millionths: what is known of the far end of a road changes the digits behind.
     """
     other = estimate.other
     best = estimate.once_total
@@ -335,7 +335,7 @@ def _place_shares(estimate, lanes, chosen, part):
         for values, rows in zip(least_nats, (alike, same_place & ~alike)):
             np.minimum.at(values, lane[rows], nats[compared[rows]])
         directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
-    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes]
+    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes].round(6)
 
 
 def _second_readings(estimate, lanes, rows, way, part):
@@ -363,7 +363,7 @@ def _second_readings(estimate, lanes, rows, way, part):
         overlapping = candidates[(slot[candidates] == second)
                                  & (np.abs(d[candidates] - lanes.d[row]) < (width[candidates] + lanes.width[row]) / 2 - SAME_LANE)]
         second_lanes = tuple(zip(d[overlapping].tolist(), width[overlapping].tolist(), direction[overlapping].tolist()))
-        readings.append(Reading(max(float(of_place[second] - best_nats), 0.0), second_lanes))
+        readings.append(Reading(max(round(float(of_place[second] - best_nats), 6), 0.0), second_lanes))
     return readings
 
 

@@ -379,9 +379,12 @@ def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray,
     # to the left of everything nobody drives
     best[:, 0, REST_FIRST, 0] = 0.0
     for j in range(1, size - 1):
-        reach = _reach(best, costs, j)
-        for kind in range(kinds):
-            back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
+        # what a boundary costs depends on the kinds of strips beside it: of each kind on its left the lowest ones are enough
+        places, reach = (values.reshape(count, kinds, kept) for values in _lowest(_reach(best, costs, j).swapaxes(1, 2).reshape(-1, j, kept), kept))
+        places += (kinds - 1) * kept * (places // kept) + kept * np.arange(kinds)[:, None]
+        chosen, lowest = _lowest((reach[:, None] + between[:, j].swapaxes(1, 2)[..., None]).reshape(-1, kinds, kept), kept)
+        best[:, j], chosen = lowest.reshape(count, kinds, kept), chosen.reshape(count, -1)
+        back[:, j] = np.take_along_axis(places.reshape(count, -1), chosen, axis=1).reshape(count, kinds, kept)
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
     reach[:, :, (KINDS >= FIRST) & (KINDS <= SECOND)] = np.inf

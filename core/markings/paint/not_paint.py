@@ -41,7 +41,8 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, are_paint: C
 
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
-    are_paint : gives (pieces,) bool by (rows, columns) int their numbers from 1 on, 0 elsewhere; None where nothing else tells what is paint
+    are_paint : gives (pieces,) by (rows, columns) int their numbers from 1 on, 0 elsewhere, the share of their evidence that counts; None
+        where nothing else tells what is paint
     """
     joined = fill_gaps(mask, int(round(ASPHALT.close / CELL_SIZE)), 0)
     for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
@@ -50,23 +51,23 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, are_paint: C
     sums = np.bincount(labels[mask], np.minimum(z[mask], ASPHALT.highest), count)
     large = sums >= ASPHALT.evidence
     if are_paint is not None and large.any():
-        large[large] = are_paint((np.cumsum(large) * large)[labels])
+        large[large] = sums[large] * are_paint((np.cumsum(large) * large)[labels]) >= ASPHALT.evidence
     clear = np.zeros(mask.shape, bool)
     clear[mask] = large[labels[mask]]
     return mask & (clear | _between(clear, mask)) if clear.any() else clear
 
 
 def two_sided(above: np.ndarray, bright: np.ndarray, least: float, labels: np.ndarray) -> np.ndarray:
-    """(pieces,) bool, whether pieces are brighter than what lies on either side of them; as of `clear_pieces`.
+    """(pieces,) share of their evidence that counts, from 0 of the rim of a repair to 1; as of `clear_pieces`.
 
-    The rim of a repair is so on one side alone, or fades out into the repair: it is hardly brighter than its brighter side, by less than `least`
-    spreads, and than much of its contrast with the darker side.
+    Such a rim is bright on one side, too, or fades out into the repair: it is brighter than its brighter side by less than `least` spreads, and that
+    side is about half as bright as itself, above the asphalt.
 
     above : (rows, columns) float32 spreads above the asphalt of the bin, local levels not taken off; bright : (rows, columns) bool cells of pieces
     """
-    low, high, middle = beside_pieces(above, labels, bright, RIMS.beside)
-    with np.errstate(invalid="ignore"):
-        return ~((middle - high < least) & (middle - high < RIMS.least_share * (middle - low)))
+    _, high, middle = beside_pieces(above, labels, bright, RIMS.beside)
+    counted = np.interp(high / np.maximum(middle, 1e-6), RIMS.brighter_side, (1.0, 0.0))
+    return np.where(middle - high < least, counted, 1.0)
 
 
 def beside_pieces(values: np.ndarray, labels: np.ndarray, bright: np.ndarray, reach: tuple[int, int]) -> np.ndarray:

@@ -28,7 +28,7 @@ from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
-from .extended_curbs import FollowedEnds, followed_steps, with_led_on
+from .extended_curbs import FollowedEnds, followed_steps, island_ends, with_led_on
 from .ground_raster import averaged, driven_ground, ground_raster, ground_slopes
 from .islands import far_sides, ground_behind, on_island_tops, on_main_islands
 from .main_curbs import KnownPlaces, SearchLimit, line_tree, main_curbs_of, main_runs, median_distance, places_along, usual_height
@@ -221,6 +221,8 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     ground = _behind(raster, slopes, steps)
     hidden = far_sides(raster, steps, ground)
     hidden = hidden[wanted(hidden.x, hidden.y)]
+    if settings.limits.automatic_height:
+        hidden = PlanSteps.join([hidden, island_ends(views[0], PlanSteps.join([steps, hidden]))])
     # its near side is the far side of a far side; an island ends where its top does, not where the ground comes out of its shadow
     falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), RETURN.min_island_width)]
     # averaging leaves the errors of single beams and the drift of positions

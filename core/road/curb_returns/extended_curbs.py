@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...common.arrays import Rows
 from ..common.corners import RunningSums, SideLines
@@ -29,7 +30,7 @@ from .classify import CurbReturn, classify_continuation
 from .ground_raster import GroundRaster, averaged, ground_raster
 from .main_curbs import KnownPlaces, tips_of
 from .steps import PATCH_HALF_WIDTH, PlanSteps, points_about, steps_of_points
-from .tracking import LineEnds, PlanStepChain
+from .tracking import LineEnds, PlanStepChain, join_chains, link_plan_steps
 
 LEAD_IN_STEPS = int(round(RETURN.line_direction_length / RETURN.led_step))   # averages that begin on the sure curb, so that the course is its own
 # errors of an average that are independent
@@ -179,6 +180,69 @@ def _profiles(t, u, z, turns, bends, zero, cells):
             mean[k] = np.bincount(cell, h, cells) / count
             variance[k] = np.bincount(cell, h * h, cells) / count - mean[k]**2
     return mean, variance
+
+
+# Ends of islands: for a crossing an island is dropped to a few centimetres at its end, which no single view of a noisy scanner shows.
+#
+# Between the ends of two sides that lie side by side the island ends somewhere. Averaged across it, the end stands out as the curbs do that lead on.
+
+
+def island_ends(ground: GroundRaster, steps: PlanSteps) -> PlanSteps:
+    """Steps of the ends of islands beyond both of their sides, where none was seen.
+
+    steps : PlanSteps, among them those of the sides
+    """
+    chains = [chain.steps for chain in join_chains(link_plan_steps(steps), steps) if not chain.closed and len(chain.steps) > 2]
+    sides = LineEnds.of([(steps.x[chain], steps.y[chain], steps.h[chain]) for chain in chains], RETURN.line_direction_length)
+    tail, head = (ends[k] for ends, k in zip((sides.tails, sides.heads), np.indices((len(chains), len(chains))).reshape(2, -1)))
+    out, gap = tail[:, 3:] + head[:, 3:], head[:, :2] - tail[:, :2]
+    parallel = np.hypot(*out.T)
+    out = out / np.maximum(parallel, 1e-9)[:, None]
+    # uphill is on the right of the way out of a tail
+    width, offset = gap[:, 0] * out[:, 1] - gap[:, 1] * out[:, 0], (gap * out).sum(axis=1)
+    beside = (parallel >= 2 * np.cos(0.5 * RETURN.max_join_turn)) & (width >= RETURN.min_island_width) & (width <= RETURN.max_island_gap) \
+        & (np.abs(offset) <= RETURN.max_nose_gap)
+    ends = PlanSteps.join([PlanSteps.none(), *(_end_between(ground, tail[k, :2] + 0.5 * gap[k], out[k], float(width[k]))
+                                               for k in np.flatnonzero(beside))])
+    return ends[cKDTree(np.c_[steps.x, steps.y]).query(np.c_[ends.x, ends.y])[0] > RETURN.seen_step_distance] if len(ends) else ends
+
+
+def _end_between(ground, middle, out, width):
+    """The steps of the end of one island, from its one side to the other; none where no step is seen.
+
+    middle : (2,) local m, between the ends of its sides
+    out : (2,) unit vector in which they lead; width : m
+    """
+    across, reach, core = np.array([out[1], -out[0]]), CURBS.max_joined_gap, RETURN.core_share * width
+    places = np.stack([ground.x, ground.y], axis=1) - middle
+    t, u = places @ across, -(places @ out)
+    halves = [np.flatnonzero((side * t >= 0.0) & (side * t <= 0.5 * core) & (np.abs(u) <= reach)) for side in (-1, 1)]
+    gap, fit, short, zero = (int(round(v / RETURN.across_cell)) for v in (CURBS.blurred_face_half_width, CURBS.road_fit_length,
+                                                                          CURBS.behind_fit_length, reach))
+    turns = np.tan(RETURN.end_turns)
+    seen = [_profiles(*(v.take(half) for v in (t, u, ground.h)), turns, 0.0 * turns, zero, 2 * zero)[0] for half in halves]
+    averages, cells = 0.5 * (seen[0] + seen[1]), np.arange(gap + fit, 2 * zero - gap - short - 1)
+    levels = _Levels(averages)
+    height, scatter = levels.height[:, cells], levels.scatter(cells)
+    with np.errstate(invalid="ignore"):
+        steep = np.maximum(*(np.abs(line.slope[:, cells]) for line in (levels.before, levels.behind))) > CURBS.max_road_slope
+        sureness = np.where(steep | ~(scatter <= CURBS.max_averaged_scatter), 0.0, np.nan_to_num(height / np.hypot(scatter, CURBS.texture_sigma)))
+    k, place = np.unravel_index(int(np.argmax(sureness)), sureness.shape)
+    cell, height = int(cells[place]), float(height[k, place])
+    if sureness[k, place] < CURBS.significant_sigmas \
+            or not min(_Levels(half[k:k + 1]).height[0, cell] for half in seen) >= RETURN.min_half_share * height \
+            or _gain_over_bend(averages[k, cell - gap - fit:cell + gap + short + 1], gap + fit) < 0.5 * CURBS.significant_sigmas**2:
+        return PlanSteps.none()
+    bottom = float(levels.before.level[k, cell])
+    # where the raised ground begins in either half: what is hidden lies below it
+    raised = [np.nan_to_num(np.clip((half[k, cell - gap:cell + gap + 1] - bottom) / height, 0.0, 1.0)).sum() for half in seen]
+    begins = RETURN.across_cell * (cell + gap + 0.5 - zero - np.array(raised))
+    skew = float(turns[k] + 2.0 * (begins[1] - begins[0]) / core)
+    along = np.linspace(-0.5, 0.5, int(np.ceil(width / RETURN.following_step)) + 1) * (width - 2 * RETURN.plan_cell)
+    x, y = middle[:, None] + across[:, None] * along - out[:, None] * (begins.mean() + skew * along)
+    uphill, count = -(out + skew * across) / np.hypot(1.0, skew), np.ones(len(along))
+    return PlanSteps(x, y, uphill[0] * count, uphill[1] * count, bottom * count, height * count, 0.0 * count, scatter[k, place] * count,
+                     *(np.full(len(along), int(line.n[k, cell])) for line in (levels.before, levels.behind)))
 
 
 class _Levels:

@@ -91,8 +91,8 @@ def _down_behind(s, u, h, height, out, beside):
 
 # Far sides of islands: an island hides the foot of its own far curb, but the edge of its top is seen.
 #
-# Behind a step, the raised ground of an island ends where nothing is seen for a few decimetres, and what is seen then is as low as the road. The
-# curb stands upright beneath the outermost points of the top.
+# Behind a step, the raised ground of an island ends, and what is seen next is as low as the road. The curb stands upright beneath the outermost
+# points of the top.
 
 
 def far_sides(raster: GroundRaster, steps: PlanSteps, behind: GroundBehind) -> PlanSteps:
@@ -172,7 +172,7 @@ def on_island_tops(steps: PlanSteps, behind: GroundBehind) -> np.ndarray:
 class GroundBehind:
     """What the ground behind M steps does, along a ray uphill from each.
 
-    edge : (M,) m uphill of the last raised ground, if the step down behind it was not seen, because the raised ground itself hid it; else NaN
+    edge : (M,) m uphill of the last raised ground, if it ends at once, as where it hides its own side; NaN where it comes down little by little
     """
 
     falls: np.ndarray   # (M,) m uphill at which the ground is back at the step's bottom, NaN where it stays up
@@ -205,6 +205,6 @@ def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndar
     last[np.arange(len(out)) >= first[:, None]] = -1
     last = last.max(axis=1)
     index = np.arange(len(x))
-    # a ramp is seen all the way down
-    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[index, last] >= RETURN.min_edge_share)
-    return GroundBehind(np.where(first < len(out), out[np.minimum(first, len(out) - 1)], np.nan), np.where(hidden, out[last], np.nan), slope)
+    # a ramp comes down little by little; an upright side hides a few centimetres from a vehicle near by, and decimetres from one far away
+    upright = (first < len(out)) & (last >= 0) & (share[index, last] >= RETURN.min_edge_share)
+    return GroundBehind(np.where(first < len(out), out[np.minimum(first, len(out) - 1)], np.nan), np.where(upright, out[last], np.nan), slope)

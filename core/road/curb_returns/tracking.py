@@ -157,12 +157,15 @@ class LineEnds:
         tx, ty = tail[:, 3] - head[:, 3], tail[:, 4] - head[:, 4]
         size = np.maximum(np.hypot(tx, ty), 1e-9)
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
-        bends_uphill = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
-        max_turn = RETURN.max_join_turn + np.where(bends_uphill & (gap <= nose), gap / RETURN.nose_radius, 0.0)
+        bend = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3]
+        about_nose = (bend > 0) & (gap <= nose)
+        max_turn = RETURN.max_join_turn + np.where(about_nose, gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
+        # a square end: one of both leads on to the corner, near which the other begins
+        legs = [(dx * end[:, 4] - dy * end[:, 3]) / np.where(bend > 0, bend, np.inf) for end in (head, tail)]
+        in_line = (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) | about_nose & (np.abs(np.minimum(*legs)) <= overlap)
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (along > -overlap) & (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) & (turn <= max_turn) \
-            & (up <= CURBS.height_tolerance + RETURN.max_height_grade * gap)
+        good = (along > -overlap) & in_line & (turn <= max_turn) & (up <= CURBS.height_tolerance + RETURN.max_height_grade * gap)
         return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], len(self.heads))
 
     def _gaps(self, distance):

@@ -89,9 +89,13 @@ def _between_known(limit, weight):
 def _mixed(limit, off, weight):
     """(P,) cells by which a limit lies farther out than the cells tell: those about it hold road and other ground, and look like a mixture."""
     window = np.clip(limit[:, None] + np.arange(-SURFACE.mixed_cells, 2), 0, off.shape[1] - 1)
+    # cells of road alone are off by their noise
+    usual = known_median(off[:, :SURFACE.road_cells], 1)[:, None]
     off, every_cell = np.take_along_axis(off, window, 1), (np.take_along_axis(weight, window, 1) > 0).all(1)
-    shares = np.clip(off[:, :-1] / np.maximum(off[:, -1:], SURFACE.other_sigmas), 0.0, 1.0)
-    return np.where(every_cell & (off[:, -1] > SURFACE.other_sigmas), 1.0 - np.nan_to_num(shares).sum(1), 0.0)
+    other = off[:, -1] > SURFACE.other_sigmas
+    with np.errstate(invalid="ignore", divide="ignore"):
+        shares = np.clip((off[:, :-1] - usual) / (off[:, -1:] - usual), 0.0, 1.0)
+    return np.where(every_cell & other, 1.0 - np.nan_to_num(shares).sum(1), 0.0)
 
 
 def _unlike_road(height, rough, brightness, scatter, seen, first):

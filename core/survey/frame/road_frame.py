@@ -305,6 +305,7 @@ class RoadFrame:
     def track_height(self, road: int, s: np.ndarray, below: dict[int, float] | None = None) -> np.ndarray:
         """Height of the trajectory, (N,) local z in metres, at (N,) stations of a road: the mean of the passes there, else the nearest pass.
 
+        Towards its end a pass counts less and less, so that the mean makes no step where one in another lane ends.
         below : {pass number: metres to subtract}, such as the sensor heights
         """
         s = np.asarray(s, float)
@@ -313,9 +314,9 @@ class RoadFrame:
         passes = self.passes_of(road)
         for p in passes:
             first, last = p.span
-            driven = (s >= first) & (s <= last)
-            total += np.where(driven, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
-            count += driven
+            share = np.where((s >= first) & (s <= last), np.clip(np.minimum(s - first, last - s), FRAME.least_share, FRAME.lane_blend_length), 0.0)
+            total += share * (p.height_at_station(s) - below.get(p.number, 0.0))
+            count += share
         if not count.all():
             # beyond the driven part and between two passes: the pass that ends nearest
             nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
@@ -447,12 +448,16 @@ def _shared_with(road, line, track, moved, rows):
     along = np.isfinite(d) & (turned < FRAME.parallel_angle) & level
     if len(kept) < FRAME.min_shared_length:
         along[:] = 2 * along.sum() > len(along)
-    along = _fill_runs(along, int(FRAME.min_shared_length / 2))
+    shortest = int(FRAME.min_shared_length / 2)
+    along = _fill_runs(along, shortest)
     if not along.all():
-        along = ~_fill_runs(~along, int(FRAME.min_shared_length / 2))
+        along = ~_fill_runs(~along, shortest)
     for i, j in _runs(along):
         if along[i] and not np.nanmedian(np.abs(d[i:j])) <= FRAME.same_carriageway:
             along[i:j] = False
+        elif along[i]:
+            first, last = _without_leaps(s[i:j], shortest, i > 0, j < len(along))
+            along[i:i + first] = along[i + last:j] = False
     return _ranges_of(along, rows, kept, s)
 
 
@@ -471,14 +476,27 @@ def _ranges_of(along, rows, kept, s):
 
 
 def _jumps(s):
-    """Indices at which the station jumps, at least half of `min_shared_length` from the ends and from each other."""
-    rows = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    """Indices at which the station leaps, at least half of `min_shared_length` from the ends and from each other."""
     shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
-    for k in rows:
+    for k in _leaps(s):
         if k - last >= shortest and len(s) - k >= shortest:
             kept.append(int(k))
             last = k
     return kept
+
+
+def _without_leaps(s, shortest, joins, leaves):
+    """(first, end) of a run along a road, without a leap near its beginning, where the drive `joins` the road, or its end, where it `leaves` it.
+
+    On a small roundabout the arms lie side by side, and before the leap the drive is still on another one.
+    """
+    leaps = _leaps(s)
+    return (max(leaps[leaps < shortest], default=0) if joins else 0,
+            min(leaps[leaps > len(s) - shortest], default=len(s)) if leaves else len(s))
+
+
+def _leaps(s):
+    return np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
 
 
 def _runs(mask):
@@ -518,7 +536,7 @@ def _make_pass(road, time, x, y, z):
 
 def _longest_run(s):
     """(first, end) of the longest run of known stations without jumps; None where none is known."""
-    broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
-    cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
+    unknown = ~np.isfinite(s)
+    cuts = np.union1d(np.r_[0, np.flatnonzero(unknown[1:] | unknown[:-1]) + 1, len(s)], _leaps(s))
     runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
     return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None

@@ -19,21 +19,20 @@ from ..weights import TRAJECTORY
 from .columns import angle_between, driven_course, geographic_unit, listed, rough_metres, stated_angle_unit
 from .meaning import SAY_WHICH, meaning_of, meaning_of_table, values_by_role
 from .table_columns import columns_of_record, columns_of_rows, is_record, titled_columns
-from .trajectory import Trajectory, lengths_in_metres, reproject_trajectory
+from .trajectory import Trajectory, lengths_in_metres
 
 SBET_DOUBLES = 17  # source: Applanix POSPac; time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
 
 
-def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
+def read_trajectory(path: str | os.PathLike[str], crs: str = "", columns: str = "") -> Trajectory:
     """A trajectory from a CSV or text file, with or without header, a log of a receiver, a GPX or KML track, or an Applanix SBET file.
 
     crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and WGS 84 for longitude and latitude
-    target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
     columns : of a text table, as `assigned_columns` takes them; "" recognises them
 
     Returns Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes` state what was recognised. Longitude and latitude stay in
-    degrees (x is the longitude) when no `target_crs` is given.
+    degrees (x is the longitude).
 
     Raises RoadExtractionError if the file cannot be read or its columns are not recognised.
     """
@@ -45,8 +44,7 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
     sbet = _is_sbet(path)
     if sbet and columns.strip():
         raise RoadExtractionError(f"{path} is an Applanix SBET file, whose columns are always the same. Leave Columns empty.")
-    trajectory = _read_sbet(path, crs) if sbet else _read_text(path, crs, columns)
-    return reproject_trajectory(trajectory, target_crs) if target_crs else trajectory
+    return _read_sbet(path, crs) if sbet else _read_text(path, crs, columns)
 
 
 def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",

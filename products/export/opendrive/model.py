@@ -422,8 +422,6 @@ def _crossing(points, a, b):
     """(step, step, place) at which the steps before a cross those from b on: the one that is left last; None where none do."""
     lines = shapely.linestrings(np.stack([points[:-1, :2], points[1:, :2]], axis=1))
     before, after = np.arange(max(a - LONGEST_FOLD, 0), a), np.arange(b, min(b + LONGEST_FOLD, len(lines)))
-    if not len(before) or not len(after):
-        return None
     pairs = shapely.STRtree(lines[after]).query(lines[before], predicate="intersects")
     if not pairs.shape[1]:
         return None

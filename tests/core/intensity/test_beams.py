@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.intensity.beams import Beams
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.paint.extract import extract_markings
@@ -72,7 +72,7 @@ def test_the_beams_do_not_depend_on_the_length_of_sections(plain):
 def marked_on(street, folder):
     pytest.importorskip("osgeo.gdal")
     frame, alike, _ = street
-    write_intensity_image(alike, folder / "image.tif")
+    make_intensity_image(alike, path=folder / "image.tif").close()
     return extract_markings(alike, IntensityImage.open(folder / "image.tif"), frame)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image, write_intensity_image
+from lanewright.core.intensity.image import ImageSettings, _kernels, check_image_shows, make_intensity_image
 from lanewright.core.intensity.tiled_image import TiledImage, stored_tiles
 from lanewright.core.io.geotiff import IntensityImage, _NewGeoTiff, write_display_image
 from lanewright.core.markings.paint.windows import write_mask
@@ -47,7 +47,7 @@ def road_points(records, section_length=20.0, origin=ORIGIN, crs="EPSG:32632"):
 
 
 def image_of(records, path, settings=ImageSettings(), **kind):
-    write_intensity_image(road_points(records, **kind), path, settings)
+    make_intensity_image(road_points(records, **kind), settings, path=path).close()
     return IntensityImage.open(path)
 
 
@@ -329,7 +329,7 @@ def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_t
         records = here.astype(kind)
         records["x"] += int(east / COORDINATE_SCALE)
         points.store.append(road, records)
-    write_intensity_image(points, tmp_path / "i.tif")
+    make_intensity_image(points, path=tmp_path / "i.tif").close()
     image, alone = IntensityImage.open(tmp_path / "i.tif"), image_of(here, tmp_path / "alone.tif")
     assert image.width > 25_000_000 and len(image.tiles()) <= 4 and (tmp_path / "i.tif").stat().st_size < 5e6
     x, y = np.linspace(1.0, 9.0, 60), np.linspace(-2.5, 2.5, 60)
@@ -369,7 +369,7 @@ def test_a_cancelled_image_leaves_the_last_one_as_it_was(tmp_path):
 
     before = all_pixels(image_of(painted_street(length=5.0), tmp_path / "i.tif"))
     with pytest.raises(Cancelled):
-        write_intensity_image(road_points(painted_street(length=45.0)), tmp_path / "i.tif", ImageSettings(), Stop())
+        make_intensity_image(road_points(painted_street(length=45.0)), ImageSettings(), Stop(), tmp_path / "i.tif")
     np.testing.assert_array_equal(all_pixels(IntensityImage.open(tmp_path / "i.tif")), before)
     assert [path.name for path in tmp_path.iterdir()] == ["i.tif"]
 
@@ -398,7 +398,7 @@ def test_what_is_no_intensity_image_is_refused_in_words(tmp_path):
 
 def test_no_points_make_no_image(tmp_path):
     with pytest.raises(RoadExtractionError, match="no road points"):
-        write_intensity_image(RoadPoints.empty_like(origin=ORIGIN), tmp_path / "i.tif")
+        make_intensity_image(RoadPoints.empty_like(origin=ORIGIN), path=tmp_path / "i.tif")
     assert not list(tmp_path.iterdir())
 
 

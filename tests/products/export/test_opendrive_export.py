@@ -245,6 +245,13 @@ def test_the_driving_line_is_held_against_the_middle_of_the_lane(tmp_path):
     assert driving_line_misses(layer, layers_of_opendrive(whole).lanes).p95 < 0.01
 
 
+def test_driving_lines_are_held_against_nothing_where_a_map_has_no_lanes_for_cars():
+    layer = Features("LineStringZ", DRIVING_LINES)
+    layer.add(shapely.LineString([(0, 0, 0), (10, 0, 0)]), status="measured")
+    for_bicycles = replace(s_curve(), type=np.array(["bicycle"] * len(s_curve())))
+    assert driving_line_misses(layer, for_bicycles).places == 0
+
+
 def test_moving_the_survey_moves_the_map_and_changes_nothing_else(tmp_path):
     lanes = s_curve()
     away = np.array([500_000.0, -300_000.0, 100.0])

@@ -10,7 +10,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution.keep import Keep
 from lanewright.core.execution.phase import THREADS, Threads
-from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
+from lanewright.core.intensity.image import make_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import windows
 from lanewright.core.markings.paint.extract import extract_markings
@@ -38,7 +38,7 @@ def grained(s, d, share, seed):
 def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None, progress=Progress(), of_colours=False):
     points = replace(road_points(records, frame, section_length), of_colours=of_colours)
     path = folder / "image.tif"
-    write_intensity_image(points, path)
+    make_intensity_image(points, path=path).close()
     return extract_markings(points, IntensityImage.open(path), frame, progress=progress, mask_path=mask).all_points()
 
 
@@ -291,7 +291,7 @@ def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corre
     low, high = np.percentile(records["intensity"], ends)
     records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
     points = road_points(records, FRAME)
-    write_intensity_image(points, tmp_path / "image.tif")
+    make_intensity_image(points, path=tmp_path / "image.tif").close()
     extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, progress=listener)
     assert len(listener.warned) == warnings
 
@@ -381,7 +381,7 @@ def found_and_said(tiles, frame, folder):
     points, listener = RoadPoints(SectionStore(ROAD_POINT, 20.0), frame.origin), Heard()
     for road, records in tiles:
         points.store.append(road, records)
-    write_intensity_image(points, folder / "image.tif")
+    make_intensity_image(points, path=folder / "image.tif").close()
     found = extract_markings(points, IntensityImage.open(folder / "image.tif"), frame, progress=listener)
     paint = found.window(0, 0, 55)
     return paint, [text for text in listener.said if "on asphalt scatter" in text]
@@ -442,7 +442,7 @@ def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint
     records["corrected"][::7] = np.nan
     points = road_points(records, FRAME)
     points.has_corrected = True
-    write_intensity_image(points, tmp_path / "image.tif")
+    make_intensity_image(points, path=tmp_path / "image.tif").close()
     paint = extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, MarkingSettings(method=method)).all_points()
     assert line(paint.s, paint.d).mean() > 0.9
     assert 0.1 < np.isnan(paint.corrected).mean() < 0.2

@@ -1,8 +1,10 @@
-"""Bright pieces that are no noise; where points lie far apart, what was not seen between two of them is no gap."""
+"""Bright pieces that are neither noise nor rims; where points lie far apart, what was not seen between two of them is no gap."""
+
+from functools import partial
 
 import numpy as np
 import pytest
-from lanewright.core.markings.paint.not_paint import clear_pieces
+from lanewright.core.markings.paint.not_paint import clear_pieces, two_sided
 
 SPOT = np.array([(row, column) for row in range(3) for column in range(3)])   # cells that one point brightens
 
@@ -58,3 +60,15 @@ def test_a_faint_line_of_some_length_is_paint_and_a_short_faint_one_or_a_bright_
     mask = np.zeros((160, 160), bool)
     mask[20:20 + cells // 2, 80:82] = True
     np.testing.assert_array_equal(pieces(mask, np.ones(mask.shape, bool), brightness), mask & kept)
+
+
+@pytest.mark.parametrize("beside, kept", [(0.5, True), (1.3, True), (2.0, False), (4.5, False)])
+@pytest.mark.parametrize("length", [40, 100])
+def test_a_worn_line_beside_somewhat_brighter_ground_is_paint_and_a_rim_that_fades_into_a_repair_is_none(beside, kept, length):
+    above = np.zeros((160, 160), np.float32)
+    above[:, 83:] = beside
+    mask = np.zeros((160, 160), bool)
+    mask[20:20 + length, 80:83] = True
+    above[mask] = 4.0
+    found = clear_pieces(np.where(mask, 4.0, 0.0), mask, np.ones(mask.shape, bool), partial(two_sided, above, mask, 3.0))
+    np.testing.assert_array_equal(found, mask & kept)

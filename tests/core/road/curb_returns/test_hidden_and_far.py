@@ -1,11 +1,15 @@
 """Curbs where points are few: far out along a line that is known, behind an island, and on a road that tilts."""
 
 import numpy as np
+import pytest
 import shapely
 import shapely.affinity
 from curbed_streets import EAST, NORTH
-from lanewright.core.road.curb_returns.extended_curbs import FollowedEnds, followed_steps
-from lanewright.core.road.curb_returns.ground_raster import ground_raster
+from lanewright.core.road.curb_returns.extended_curbs import FollowedEnds, followed_steps, island_ends
+from lanewright.core.road.curb_returns.ground_raster import ground_raster, ground_slopes
+from lanewright.core.road.curb_returns.islands import far_sides, ground_behind
+from lanewright.core.road.curb_returns.steps import PlanSteps
+from lanewright.core.road.weights import RETURN
 from road_layers import detect_curbs, fit_road_edges
 from street_plans import scan, side_street, sidewalks, survey_along
 
@@ -72,6 +76,35 @@ def test_an_island_that_hides_its_own_far_side_is_surrounded():
     far = shapely.LineString([(13.5, 3.2), (24.5, 3.2)])
     lines = shapely.union_all(lines_of(edges, "island"))
     assert shapely.intersection(far, shapely.buffer(lines, 0.08)).length > 0.8 * far.length
+
+
+def test_a_vehicle_beside_an_island_sees_where_its_far_side_ends():
+    """It hides 8 cm of the road behind it, so that no cell of the raster is empty there."""
+    island = shapely.box(10, 1.0, 30, 3.24)
+    raster = ground_raster(*scan(island, hidden=shapely.box(5, 3.22, 35, 3.32), seed=5)[:3], 0.05)
+    x = np.arange(12.0, 28.0, 0.25)
+    level = np.zeros(len(x))
+    near = PlanSteps(x, level + 1.0, level, level + 1.0, level, level + 0.12, level, level + 0.003, level + 20, level + 20)
+    far = far_sides(raster, near, ground_behind(raster, ground_slopes(raster.low), *near.columns()[:6], RETURN.max_island_width))
+    assert len(far) > 0.9 * len(x)
+    assert np.abs(far.y - 3.22).max() < 0.1 and np.median(np.abs(far.y - 3.22)) < 0.02
+
+
+@pytest.mark.parametrize("dropped, ends", [(0.035, True), (0.0, False)])
+def test_an_island_that_is_dropped_for_a_crossing_ends_where_its_step_of_centimetres_is(dropped, ends):
+    """One that comes down to the road in a ramp has no curb there."""
+    x, y, z, _ = scan(shapely.box(10, 1.0, 26, 3.0), noise=0.004, hidden=shapely.box(25, 0.95, 27, 3.05), spacing=0.03)
+    grid = np.random.default_rng(4).uniform((25, 0.95), (27, 3.05), (4000, 2))
+    top = np.where((grid[:, 0] < 26) & (grid[:, 1] > 1.0) & (grid[:, 1] < 3.0), dropped + (26 - grid[:, 0]) * (0.12 - dropped), 0.0)
+    raster = ground_raster(np.r_[x, grid[:, 0]], np.r_[y, grid[:, 1]], np.r_[z, top + np.random.default_rng(5).normal(0.0, 0.004, len(top))], 0.05)
+    along = np.arange(14.0, 25.0, 0.3)
+    level = np.zeros(2 * len(along))
+    sides = PlanSteps(np.r_[along, along], np.repeat([1.0, 3.0], len(along)), level, np.repeat([1.0, -1.0], len(along)), level, level + 0.12,
+                      level, level + 0.004, level + 20, level + 20)
+    end = island_ends(raster, sides)
+    assert bool(len(end)) == ends
+    np.testing.assert_allclose(end.x, 26.0, atol=0.03)
+    np.testing.assert_allclose(end.height, dropped, atol=0.008)
 
 
 def test_an_island_on_a_road_that_tilts_where_it_stands_is_one():

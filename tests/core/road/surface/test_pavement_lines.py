@@ -111,6 +111,14 @@ def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options)
     assert min(covered(edges, survey, 1), covered(edges, survey, -1)) >= 0.95
 
 
+def test_drawn_edges_lie_neither_inward_nor_outward_by_a_centimetre():
+    off = []
+    for seed in (5, 6, 7):
+        survey = street(seed=seed)
+        off += [np.abs(places[(places[:, 0] > 3) & (places[:, 0] < LENGTH - 3), 1]) - HALF for _, places in on_map(found(survey), survey)]
+    assert abs(np.concatenate(off).mean()) < 0.008
+
+
 @pytest.mark.parametrize("gain", [lambda d: 1.8 + 0 * d, lambda d: 1.3 + 0.1 * d, lambda d: np.where(d > 0, 0.6, 1.7)])
 def test_between_scanners_of_different_gain_a_strip_of_gravel_is_no_road_on_either_side(gain):
     survey = street(gravel=0.8, gain=gain)

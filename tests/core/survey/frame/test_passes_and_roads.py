@@ -50,12 +50,43 @@ def test_a_roundabout_driven_straight_through_is_one_road():
     assert len(frame.roads) == len(frame.passes) == 1
 
 
+@pytest.mark.parametrize("radius", [5, 8, 9, 10])
+def test_who_drives_straight_over_a_small_roundabout_does_not_leap_to_the_arm_that_another_drive_came_from(radius):
+    """The first drive crosses from the west to the east, the second one comes from the south and goes round to the west."""
+    def ring(first, last):
+        angles = np.radians(np.linspace(first, last, int(abs(last - first)) + 1))
+        return radius * np.c_[np.cos(angles), np.sin(angles)]
+
+    def arm(angle, aside):
+        u, (cos, sin) = np.arange(60.0, radius + 5.0, -1.0)[:, None], (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+        return u * [cos, sin] + aside * np.array([-sin, cos])
+
+    def smooth(path):
+        way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(path, axis=0).T))]
+        path = np.column_stack([np.interp(np.arange(0.0, way[-1], 0.1), way, axis) for axis in path.T])
+        return gaussian_filter1d(path, 15, axis=0, mode="nearest")
+    over = smooth(np.concatenate([arm(180, 3.0), ring(205, 305), arm(0, -3.0)[::-1]]))
+    round_it = smooth(np.concatenate([arm(270, 3.0), ring(285, 500), arm(180, -3.0)[::-1]]))
+    frame = build_frame(joined(drive(over, speed=5), drive(round_it, speed=5, start=2000.0)))
+    assert max(np.abs(np.diff(p.s)).max() for p in frame.passes) < 1.0
+    assert sum(np.hypot(np.diff(p.x), np.diff(p.y)).sum() for p in frame.passes) > 0.97 * 0.1 * (len(over) + len(round_it)), "all of both drives"
+
+
 @pytest.mark.parametrize("aside, way", [(0.5, 1), (3.5, -1), (-3.5, 1)])
 def test_a_street_driven_twice_is_one_road_with_two_passes(aside, way):
     again = STREET[::way] + [0.0, aside]
     frame = build_frame(joined(drive(STREET), drive(again, start=2000.0)))
     assert [(p.road, p.direction) for p in frame.passes] == [(0, 1), (0, way)]
     np.testing.assert_allclose(frame.passes[1].d, aside, atol=0.01)
+
+
+def test_where_a_pass_in_a_higher_lane_turns_off_the_height_of_the_road_makes_no_step():
+    """On a crossfall the lanes lie 15 cm apart in height; a step of half of that across the road would be a curb."""
+    beside = drive(STREET[:1500] + [0.0, 5.0], start=2000.0, height=2.15)
+    frame = build_frame(joined(drive(STREET), beside))
+    heights = frame.track_height(0, np.arange(0.0, 300.0, 0.25)) + frame.origin[2]
+    assert np.abs(np.diff(heights)).max() < 0.002
+    assert heights[300] == pytest.approx(102.075, abs=0.001) and heights[-1] == pytest.approx(102.0, abs=0.001)
 
 
 def test_a_block_driven_round_twice_gives_two_passes_in_the_same_direction():

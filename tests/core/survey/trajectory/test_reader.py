@@ -195,7 +195,7 @@ def test_longitude_and_latitude_reach_the_target_crs(tmp_path, header, factor):
     lon, lat = geographic(trajectory)
     rows = np.c_[trajectory.time, lon * factor, lat * factor, trajectory.z]
     np.savetxt(tmp_path / "t.csv", rows, "%.12f", ",", header=header, comments="")
-    found = read_trajectory(tmp_path / "t.csv", target_crs="EPSG:32632")
+    found = reproject_trajectory(read_trajectory(tmp_path / "t.csv"), "EPSG:32632")
     assert_same(found, trajectory, ("time", "z"))
     np.testing.assert_allclose(found.x, trajectory.x, atol=1e-3)
     np.testing.assert_allclose(found.y, trajectory.y, atol=1e-3)
@@ -219,7 +219,7 @@ def test_applanix_sbet_reaches_the_target_crs_with_headings_from_grid_north(tmp_
     trajectory = drive(chain(ahead(120), bend(60, 80), ahead(60)), east=EAST + 150_000)
     heading = np.degrees(np.arctan2(np.gradient(trajectory.x), np.gradient(trajectory.y)))
     trajectory = Trajectory(trajectory.time, trajectory.x, trajectory.y, trajectory.z, 0 * heading + 1.0, 0 * heading - 0.5, heading)
-    found = read_trajectory(write_sbet(tmp_path / name, trajectory, wander), target_crs="EPSG:32632")
+    found = reproject_trajectory(read_trajectory(write_sbet(tmp_path / name, trajectory, wander)), "EPSG:32632")
     assert_same(found, trajectory, ("time", "z", "roll", "pitch"))
     np.testing.assert_allclose(np.c_[found.x, found.y], np.c_[trajectory.x, trajectory.y], atol=1e-3)
     # grid north and true north differ by 1.5 degrees there

@@ -6,7 +6,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.trajectory.meaning import columns_of_table
 from lanewright.core.survey.trajectory.reader import read_trajectory, trajectory_from_rows
 from lanewright.core.survey.trajectory.time_systems import align_time
-from lanewright.core.survey.trajectory.trajectory import clean_trajectory
+from lanewright.core.survey.trajectory.trajectory import clean_trajectory, reproject_trajectory
 from written_drives import (
     ECEF,
     GEO,
@@ -101,7 +101,7 @@ def check(found, time, tolerance=0.003):
 def read(tmp_path, text, name="drive.csv", **more):
     path = tmp_path / name
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_trajectory(path, target_crs="EPSG:32650", **more)
+    return reproject_trajectory(read_trajectory(path, **more), "EPSG:32650")
 
 
 @pytest.mark.parametrize("written", TIMES)
