@@ -36,7 +36,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 500   # derived: stations that are looked at together, 250 m of road: what is chosen from takes 0.2 MB for each interval
@@ -141,7 +141,7 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int,
     candidates, evidence, first_direction, count, known, left = item
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
-    sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
+    sections.cost += _roads_of_many_lanes(candidates, sections, evidence, weights)
     return (sections[:count], misnamed_costs(candidates, sections, weights)[:count],
             transitions(candidates, sections, known, lane_width, left, weights))
 
@@ -186,7 +186,7 @@ def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, 
         sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
 
 
-def _roads_of_many_lanes(c, sections, divided, weights):
+def _roads_of_many_lanes(c, sections, evidence, weights):
     """(I, K) nats of how many lanes lead which way."""
     strips = lane_strips(sections)
     total, ahead = np.zeros((2, *sections.cost.shape))
@@ -200,12 +200,8 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
     cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
     cost = np.where(~one_way & (total == 3), weights.two_and_one, cost)
-    cost = np.where(divided[:, None], np.where(one_way | (total == 0), 0.0, weights.two_way_carriageway), cost)
-    # where there are more than two lanes, dashes do not part the directions
-    kind_right = np.where(sections.right >= 0, np.take_along_axis(sections.strip, np.maximum(sections.right, 0), axis=2), -1)
-    parts = (sections.strip == FIRST) & (kind_right == SECOND)
-    drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
-    cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
+    cost = np.where(evidence.divided[:, None], np.where(one_way | (total == 0), 0.0, weights.two_way_carriageway), cost)
+    cost += np.where(evidence.again_one_way[:, None] & ~one_way & (total > 0), weights.never_back, 0.0)
     # what nobody drives on between lines of lanes, as a median, parts the directions, above all what is too narrow for a lane
     before = strips_before(sections)
     i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)) & np.isin(before, (FIRST, SECOND)))
@@ -311,7 +307,7 @@ def _place_shares(estimate, lanes, chosen, part):
 
     That is of all cross-sections that have a lane within SAME_LANE, whatever bounds it and whatever lies beside it, and of those of its direction
     among them. Of directions the most probable sequences are weighed against each other where the other side of traffic counts too: a road that is
-    one way is the same reading on both.
+    one way is the same reading on both. In millionths: what is known of the far end of a road changes the digits behind.
     """
     other = estimate.other
     best = estimate.once_total
@@ -339,7 +335,7 @@ def _place_shares(estimate, lanes, chosen, part):
         for values, rows in zip(least_nats, (alike, same_place & ~alike)):
             np.minimum.at(values, lane[rows], nats[compared[rows]])
         directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
-    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes]
+    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes].round(6)
 
 
 def _second_readings(estimate, lanes, rows, way, part):
@@ -367,7 +363,7 @@ def _second_readings(estimate, lanes, rows, way, part):
         overlapping = candidates[(slot[candidates] == second)
                                  & (np.abs(d[candidates] - lanes.d[row]) < (width[candidates] + lanes.width[row]) / 2 - SAME_LANE)]
         second_lanes = tuple(zip(d[overlapping].tolist(), width[overlapping].tolist(), direction[overlapping].tolist()))
-        readings.append(Reading(max(float(of_place[second] - best_nats), 0.0), second_lanes))
+        readings.append(Reading(max(round(float(of_place[second] - best_nats), 6), 0.0), second_lanes))
     return readings
 
 

@@ -239,7 +239,7 @@ def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
     s = STATION_STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
-    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
+    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), median(lines[key][0].d), key))
     names = sorted({p.pattern for pieces in lines.values() for p in pieces})
     rows = []
     for key in order:
@@ -256,8 +256,9 @@ def _row_of(number, pieces, s, names, longest):
     row = _GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
     for p, (a, b) in zip(pieces, bounds.tolist()):
         inside, grid = slice(a - first, b - first), s[a:b]
-        for name, value in (("d", np.interp(grid, p.s, p.d)), ("z", np.interp(grid, p.s, p.z)), ("drawn", names.index(p.pattern)), ("number", number),
-                            ("width", p.width)):
+        # to 0.1 mm, as points are: paint that changes somewhere moves a fitted line by less everywhere
+        for name, value in (("d", np.round(np.interp(grid, p.s, p.d), 4)), ("z", np.round(np.interp(grid, p.s, p.z), 4)),
+                            ("drawn", names.index(p.pattern)), ("number", number), ("width", p.width)):
             row.columns[name][inside] = value
         row.columns["seen"][inside] |= p.seen
     return _GridRow(row.kind, row.pattern, first, row.columns)

@@ -379,9 +379,12 @@ def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray,
     # to the left of everything nobody drives
     best[:, 0, REST_FIRST, 0] = 0.0
     for j in range(1, size - 1):
-        reach = _reach(best, costs, j)
-        for kind in range(kinds):
-            back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
+        # what a boundary costs depends on the kinds of strips beside it: of each kind on its left the lowest ones are enough
+        places, reach = (values.reshape(count, kinds, kept) for values in _lowest(_reach(best, costs, j).swapaxes(1, 2).reshape(-1, j, kept), kept))
+        places += (kinds - 1) * kept * (places // kept) + kept * np.arange(kinds)[:, None]
+        chosen, lowest = _lowest((reach[:, None] + between[:, j].swapaxes(1, 2)[..., None]).reshape(-1, kinds, kept), kept)
+        best[:, j], chosen = lowest.reshape(count, kinds, kept), chosen.reshape(count, -1)
+        back[:, j] = np.take_along_axis(places.reshape(count, -1), chosen, axis=1).reshape(count, kinds, kept)
         best[:, j][~candidates.valid[:, j]] = np.inf
     reach = _reach(best, costs, size - 1)
     reach[:, :, (KINDS >= FIRST) & (KINDS <= SECOND)] = np.inf
@@ -408,7 +411,10 @@ def _boundary_costs(c, stops, first_direction, w):
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     middle = (c.left + c.right) / 2
-    stopped = _stops_across(_at_stop(stops), middle)
+    half = NEUTRAL.narrowest_lane / 2
+    stopped, on_left, on_right = (_stops_across(_at_stop(stops), middle + aside) for aside in (0.0, half, -half))
+    # the lane on the outer side has a stop line, the one on the inner side has none
+    outer_alone = {FIRST: (on_left > 0) & (on_right == 0), SECOND: (on_right > 0) & (on_left == 0)}
     wide = np.nan_to_num(c.wide)[..., None]
     table = np.where(wide > 0, (1 - wide) * table + wide * w.wide_line[c.made_of.clip(SOLID, DASHED)], table)
     solid = (c.made_of == SOLID)[..., None]
@@ -423,7 +429,7 @@ def _boundary_costs(c, stops, first_direction, w):
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
                 cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \
-                    + w.split_stop * stopped * (use == CENTRE_LINE)
+                    + w.split_stop * stopped * (use == CENTRE_LINE) + w.outer_stopped * outer_alone.get(left, 0.0) * (left == right)
     # other lines may be none, and what else lies where nobody drives bounds nothing
     cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(
         c.painted, np.minimum(table[:, :, OTHER_LINE], w.paint_in_rest * _told(c)), 0.0)

@@ -34,9 +34,6 @@ class _End:
     reach: float   # m of paint the slope is from
     open: float   # m across that it may be off by: where tracks are few, and where so short a piece shows no slope, from its middle on
 
-    def offset_at(self, s, trust):
-        return self.d + trust * self.slope * (s - self.s)
-
 
 def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = LINKS.end_window) -> list[_End]:
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
@@ -65,30 +62,35 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
     return [_End(*end) for end in np.column_stack([tips, level + slope * (tips - middle), slope, span, unknown]).tolist()]
 
 
-def _miss(before: _End, after: _End, trend: CommonTrend, edges: EdgesBeside, ends: LinkedLine, begins: LinkedLine) -> float:
-    """Metres across by which the end of one line misses the start of the next, at the middle of the gap: the least of several views.
+def _misses(pairs: Sequence[tuple[int, int]], ends: list[_End], starts: list[_End], lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside,
+            limit: np.ndarray) -> np.ndarray:
+    """(P,) metres across by which the ends of lines miss the starts of the next, at the middle of the gap: the least of several views.
 
     Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope; those of another carriageway may lead
     away. Or both keep their distance from one edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That
-    last view is of gaps alone. No line leads across an island.
+    last view is of gaps alone. No line leads across an island: there, and above the `limit`, (P,) m, it is inf.
+
+    pairs : number of the line that ends, and of that which begins
     """
-    middle, reach = (before.s + after.s) / 2, min(before.reach, after.reach)
-    s = np.array([before.s, after.s])
-    d, tips = np.array([before.d, after.d]) + trend.at(s), s + [-before.reach, after.reach]
-    if edges.bar(s, d):
-        return np.inf
-    slope = [before.slope, after.slope] + (trend.at(tips) - trend.at(s)) / np.where(tips == s, 1.0, tips - s)
-    pointed = d + reach**4 / (reach**4 + 4.0) * slope * (middle - s)
-    miss = min(abs(pointed[1] - pointed[0]), *(
-        abs(before.offset_at(middle, trust) - after.offset_at(middle, trust)) for trust in (0.0, reach**2 / (reach**2 + 4.0))))
-    edge = edges.between((s[0], d[0]), (s[1], d[1]))
-    if edge is None:
-        return miss
-    miss = min(miss, float(np.ptp(d - edge(s))))
-    if after.s - before.s <= LINKS.max_strand_overlap:
-        return miss
-    clearances = [median(own_d - edge(own_s)) for own_s, own_d in (ends.end_places[0], begins.end_places[1])]
-    return min(miss, abs(clearances[1] - clearances[0]))
+    if not pairs:
+        return np.empty(0)
+    tips = [np.array([(tip.s, tip.d, tip.slope, tip.reach) for tip in of])[list(rows)] for of, rows in zip((ends, starts), zip(*pairs))]
+    s, beside, slope, reach = np.stack(tips, axis=-1).swapaxes(0, 1)
+    ahead, least = s.mean(axis=1, keepdims=True) - s, reach.min(axis=1, keepdims=True)
+    back, level = reach * [-1, 1], trend.at(s)
+    d, pointed = beside + level, slope + (trend.at(s + back) - level) / np.where(back == 0, 1.0, back)
+    views = [d + least**4 / (least**4 + 4.0) * pointed * ahead, *(beside + trust * slope * ahead for trust in (0.0, least**2 / (least**2 + 4.0)))]
+    miss = np.min([np.abs(np.diff(view)[:, 0]) for view in views], axis=0)
+    edge = edges.along(s, d)
+    for number in np.unique(edge[edge >= 0]).tolist():
+        rows = np.flatnonzero(edge == number)
+        miss[rows] = np.minimum(miss[rows], np.ptp(d[rows] - np.interp(s[rows], *edges.edges[number]), axis=1))
+        for k in rows[s[rows, 1] - s[rows, 0] > LINKS.max_strand_overlap].tolist():
+            before, after = (lines[line].end_places[side] for side, line in enumerate(pairs[k]))
+            clearances = [median(painted_d - np.interp(painted_s, *edges.edges[number])) for painted_s, painted_d in (before, after)]
+            miss[k] = min(miss[k], abs(clearances[1] - clearances[0]))
+    near = np.flatnonzero(miss <= limit)
+    return np.where(np.isin(np.arange(len(miss)), near[~edges.bars(s[near], d[near])]), miss, np.inf)
 
 
 def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
@@ -98,17 +100,13 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     """
     starts, ends = (_line_ends(lines, trend, at_start) for at_start in (True, False))
     twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
-    pairs = []
-    for a, b in _facing(starts, ends, -LINKS.max_strand_overlap, max_gap):
-        before, after = ends[a], starts[b]
-        if lines[b].last <= lines[a].last or _between_twins(twin_ends[a], twin_starts[b], before, after) \
-                or abs(before.slope - after.slope) > TREND.max_line_slope and min(before.reach, after.reach) > 3.0:
-            continue
-        gap = max(after.s - before.s, 0.0)
-        limit = allowed * (0.5 + 0.5 * gap / max(max_gap, 1e-6)) + before.open + after.open
-        if (miss := _miss(before, after, trend, edges, lines[a], lines[b])) <= limit:
-            pairs.append(((miss / limit) ** 2 + gap / max_gap, a, b))
-    return _joined(lines, assigned_links(pairs))
+    pairs = [(a, b) for a, b in _facing(starts, ends, -LINKS.max_strand_overlap, max_gap)
+             if lines[b].last > lines[a].last and not _between_twins(twin_ends[a], twin_starts[b], ends[a], starts[b])
+             and (abs(ends[a].slope - starts[b].slope) <= TREND.max_line_slope or min(ends[a].reach, starts[b].reach) <= 3.0)]
+    gap = np.array([max(starts[b].s - ends[a].s, 0.0) for a, b in pairs])
+    limit = allowed * (0.5 + 0.5 * gap / max(max_gap, 1e-6)) + np.array([ends[a].open + starts[b].open for a, b in pairs])
+    cost = (_misses(pairs, ends, starts, lines, trend, edges, limit) / limit) ** 2 + gap / max_gap
+    return _joined(lines, assigned_links([(cost[k], *pairs[k]) for k in np.flatnonzero(np.isfinite(cost)).tolist()]))
 
 
 def _facing(starts, ends, least, most):
@@ -142,8 +140,7 @@ def _between_twins(twin_before, twin_after, before, after):
     """Whether a double line meets a single one in its middle: it ends there. Where only wear hides a twin, the other goes straight on."""
     if (twin_before == 0.0) == (twin_after == 0.0):
         return False
-    middle = (before.s + after.s) / 2
-    step = after.offset_at(middle, 0.0) - before.offset_at(middle, 0.0)
+    step = after.d - before.d
     share = step / twin_before if twin_before else -step / twin_after
     return LINKS.middle_share[0] < share < LINKS.middle_share[1]
 
@@ -195,14 +192,12 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
     """
     while True:
         ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
-        pairs, neighbours = [], lines_beside(lines)
-        for a, b in _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge):
-            before, after = ends[a], starts[b]
-            if min(lines[a].painted, lines[b].painted) < LINKS.min_paint_beside_gap \
-                    or (miss := _miss(before, after, trend, edges, lines[a], lines[b])) > allowed:
-                continue
-            if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, neighbours, (a, b), before, after, trend):
-                pairs.append(((miss / allowed) ** 2 + (after.s - before.s) / max_bridge, a, b))
+        facing, neighbours = _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge), lines_beside(lines)
+        possible = [(a, b) for a, b in facing if min(lines[a].painted, lines[b].painted) >= LINKS.min_paint_beside_gap]
+        misses = _misses(possible, ends, starts, lines, trend, edges, np.full(len(possible), allowed))
+        pairs = [((miss / allowed) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
+                 if np.isfinite(miss) and (same_dash_pattern(lines[a], lines[b])
+                                           or _runs_beside(lines, neighbours, (a, b), ends[a], starts[b], trend))]
         if not pairs:
             return lines
         # the pattern and the course of a longer line are known better: search again

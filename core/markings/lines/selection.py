@@ -62,9 +62,9 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, min_paint: float, 
             return spans[near[(owner[near] != k) & (np.abs(level[owner[near]] - level[k]) <= SELECTION.max_neighbour_offset)]]
 
         pieces = _extended(_line_pieces(parts[k]), parts[k], painted, painted_beside, line)
-        ends = [np.array([piece.first, piece.last]) for piece in pieces]
-        crosses = [edges.bar(s, np.interp(s, *line.by_station), hatching=True) for s in ends]
-        pieces = [piece for piece, hatched in zip(pieces, crosses) if piece.status == "measured" or not hatched]
+        ends = np.array([(piece.first, piece.last) for piece in pieces]).reshape(-1, 2)
+        crosses = edges.bars(ends, np.interp(ends, *line.by_station), hatching=True)
+        pieces = [piece for piece, hatched in zip(pieces, crosses.tolist()) if piece.status == "measured" or not hatched]
         selected.append(SelectedLine(line, _named_double(pieces, *twins[k])))
     return selected
 

@@ -319,9 +319,10 @@ class EdgesBeside:
         return [shapely.STRtree(shapely.buffer(list(map(shapely.Polygon, areas)), -SELECTION.max_bar_end_offset))
                 for areas in (self.islands, self.hatched)]
 
-    def bar(self, s: np.ndarray, d: np.ndarray, hatching: bool = False) -> bool:
-        """Whether an island, or else a hatched area, lies between two places, (2,) m each."""
-        return len(self._inner[hatching].query(shapely.linestrings(s, d), predicate="intersects")) > 0
+    def bars(self, s: np.ndarray, d: np.ndarray, hatching: bool = False) -> np.ndarray:
+        """(N,) bool, whether an island, or else a hatched area, lies between two places, (N, 2) m each."""
+        between, _ = self._inner[hatching].query(shapely.linestrings(np.stack([s, d], axis=-1)), predicate="intersects")
+        return np.isin(np.arange(len(s)), between)
 
     def framed(self, line: LinkedLine) -> bool:
         """Whether a line is the outline of hatched areas along most of its paint; an edge line beside one goes on after it."""
@@ -332,6 +333,18 @@ class EdgesBeside:
     @cached_property
     def _spans(self):
         return np.array([(s[0], s[-1]) for s, _ in self.edges]).reshape(-1, 2).T
+
+    def along(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) the nearest edge that leads along both of two places, (N, 2) m each; -1 without one."""
+        order, result, nearest = np.argsort(s.min(axis=1)), np.full(len(s), -1), np.full(len(s), np.inf)
+        low, high = s.min(axis=1)[order], s.max(axis=1)[order]
+        for k, (edge, first, last) in enumerate(zip(self.edges, *self._spans)):
+            inside = np.arange(*np.searchsorted(low, [first, np.nextafter(last, np.inf)]))
+            rows = order[inside[high[inside] <= last]]
+            farthest = np.abs(np.interp(s[rows], *edge) - d[rows]).max(axis=1)
+            nearer = farthest < nearest[rows]
+            result[rows[nearer]], nearest[rows[nearer]] = k, farthest[nearer]
+        return np.where(nearest <= LINE_TO_EDGE, result, -1)
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""

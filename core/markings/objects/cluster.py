@@ -337,7 +337,7 @@ def _scanning_distances(paint, markings, line, frame):
 
 MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
 DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
-TASK_POINTS = 20_000   # derived: of paint, that a worker process is given together on average: about a tenth of a second of its time
+TASK_POINTS = 5_000   # derived: of paint in an item on average, of which a worker process is given four together: a tenth of a second of its time
 
 
 def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> list[Comb | None]:

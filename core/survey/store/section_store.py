@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -41,13 +42,17 @@ class PartitionedPoints:
 
 
 class _Part(NamedTuple):
-    """Points of a section in a file: rows `first` to `first + size` of the `rows` that lie there column by column from the byte `place` on."""
+    """Points of a section in a file: rows `first` to `first + size` of the `rows` that lie there column by column from the byte `place` on.
+
+    content : hash of them, 0 where that is not known
+    """
 
     file: ArrayFile | Path
     place: int
     rows: int
     first: int
     size: int
+    content: int = 0
 
 
 @dataclass
@@ -62,7 +67,8 @@ class _Section:
 class StoreIndex:
     """Where the points of a store lie: all that others need to know of them.
 
-    parts : (K, 8) int64: road, section, number of the file, first byte, rows there, first row and rows of the part, whether it is in canonical order
+    parts : (K, 9) int64: road, section, number of the file, first byte, rows there, first row, rows and content of the part, whether it is in
+        canonical order
     """
 
     files: tuple[Any, ...]   # names of files of one folder, or the open ArrayFile of a store without a folder
@@ -73,13 +79,13 @@ class StoreIndex:
         files: dict[Any, int] = {}
         rows = [(*key, files.setdefault(part.file.name if isinstance(part.file, Path) else part.file, len(files)), *part[1:], section.in_order)
                 for key, section in sections for part in section.parts]
-        return cls(tuple(files), np.array(rows, np.int64).reshape(-1, 8))
+        return cls(tuple(files), np.array(rows, np.int64).reshape(-1, 9))
 
     @classmethod
     def join(cls, indexes: Sequence[StoreIndex]) -> StoreIndex:
         before = np.cumsum([0, *(len(index.files) for index in indexes)])
-        parts = [index.parts + np.array([0, 0, shift, 0, 0, 0, 0, 0]) for index, shift in zip(indexes, before)]
-        return cls(tuple(name for index in indexes for name in index.files), np.concatenate([np.empty((0, 8), np.int64), *parts]))
+        parts = [index.parts + np.array([0, 0, shift, 0, 0, 0, 0, 0, 0]) for index, shift in zip(indexes, before)]
+        return cls(tuple(name for index in indexes for name in index.files), np.concatenate([np.empty((0, 9), np.int64), *parts]))
 
 
 class SectionStore:
@@ -121,7 +127,7 @@ class SectionStore:
     def append(self, road: int, records: np.ndarray | Columns) -> None:
         """Add (N,) records of one road; each goes to the section of its station."""
         if len(records):
-            self.add(self.partition(road, records))
+            self.add(self.partition(road, records), True)
 
     def partition(self, road: int, records: np.ndarray | Columns, mask: np.ndarray | None = None) -> PartitionedPoints:
         """Partition points of a road, N > 0, by section: the part of `append` that any thread may do. `mask` : (N,) bool, the points to take."""
@@ -135,18 +141,31 @@ class SectionStore:
         columns = Columns.from_records(records).take(order)
         return PartitionedPoints(int(road), columns, low, ends[STORE.strips_per_section - 1::STORE.strips_per_section].tolist())
 
-    def add(self, points: PartitionedPoints) -> None:
+    def add(self, points: PartitionedPoints, hashed: bool = False) -> None:
+        """Add what `partition` gave; `hashed` : whether `state` is to tell the points by what they are."""
         rows = len(points.records)
-        file, place = self._written(False, rows, (points.records[name] for name in self._stored))
-        for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
+        hashes = [hashlib.sha256() if hashed else None for _ in points.ends]
+        file, place = self._written(False, rows, self._columns_of(points.records, points.ends, hashes))
+        for k, (first, end, sha) in enumerate(zip([0, *points.ends], points.ends, hashes)):
             if end > first:
-                self._add_part((points.road, points.first + k), _Part(file, place, rows, first, end - first), False)
+                self._add_part((points.road, points.first + k), _Part(file, place, rows, first, end - first, _number(sha)), False)
 
     def put(self, road: int, section: int, records: Any) -> None:
         """Set the stored columns of the (N,) points of one section, in canonical order; no more points are added to it."""
         if len(records):
-            file, place = self._written(True, len(records), (records[name] for name in self._stored))
-            self._add_part((int(road), int(section)), _Part(file, place, len(records), 0, len(records)), True)
+            rows, sha = len(records), hashlib.sha256()
+            file, place = self._written(True, rows, self._columns_of(records, [rows], [sha]))
+            self._add_part((int(road), int(section)), _Part(file, place, rows, 0, rows, _number(sha)), True)
+
+    def _columns_of(self, records, ends, hashes):
+        """The stored columns, which go into the hashes of the parts that end at these rows."""
+        for name in self._stored:
+            column = records[name]
+            for first, end, sha in zip([0, *ends], ends, hashes):
+                if sha is not None:
+                    sha.update(name.encode())
+                    sha.update(np.ascontiguousarray(column[first:end]).data)
+            yield column
 
     def _written(self, in_order, rows, columns):
         """The file and the first byte at which columns are written."""
@@ -202,8 +221,9 @@ class SectionStore:
         return [(road, number) for number in range(first, end) if (road, number) in self._sections]
 
     def state(self, stretch: Stretch) -> list[Any]:
-        """Plain values that differ where the points of a stretch are others: in which files they lie, and where there."""
-        parts = [[*key, part.file.name, part.place, part.first, part.size] for key in self.in_stretch(stretch) for part in self._sections[key].parts]
+        """Plain values that differ where the points of a stretch are others: their hash, or in which files they lie, and where there."""
+        parts = [[*key, *([part.content] if part.content else [part.file.name, part.place, part.first]), part.size]
+                 for key in self.in_stretch(stretch) for part in self._sections[key].parts]
         return parts + (self.base.state(stretch) if self.base is not None else [])
 
     def section(self, road: int, section: int) -> Columns:
@@ -341,8 +361,8 @@ class SectionStore:
     def adopt(self, index: StoreIndex, folder: Path | None = None) -> None:
         """Add the points that others wrote, to files of a folder where these have names."""
         files = [folder / file if folder is not None and isinstance(file, str) else file for file in index.files]
-        for road, section, number, place, rows, first, count, in_order in index.parts.tolist():
-            self._add_part((road, section), _Part(files[number], place, rows, first, count), bool(in_order))
+        for road, section, number, *part, in_order in index.parts.tolist():
+            self._add_part((road, section), _Part(files[number], *part), bool(in_order))
 
     def take_over(self, index: StoreIndex, folder: Path | None) -> None:
         """Keep the points that others wrote in order to files of a folder, from now on, instead of those that are here."""
@@ -380,6 +400,11 @@ def _unit_at(station):
     """The least whole number of units of 0.1 mm whose station is not less than some metres."""
     unit = _least(int(np.ceil(station / COORDINATE_SCALE)), lambda unit: unit * COORDINATE_SCALE >= station)
     return min(max(unit, LEAST_UNIT), MOST_UNIT)
+
+
+def _number(sha):
+    """A hash as the content of a _Part, 0 where there is none."""
+    return 0 if sha is None else int.from_bytes(sha.digest()[:8], "little", signed=True)
 
 
 def _least(unit, enough):

@@ -87,5 +87,5 @@ def test_what_is_known_of_islands_bars_the_way_and_can_be_sent_to_another_proces
         places = np.c_[street.place(station, np.full(len(station), offset)), np.full(len(station), 50.0)]
         edges.add(shapely.linestrings(places), road=0, kind="island", edge="curb", status="measured", part="bottom", chain=1, side=side)
     beside = edges_beside(RoadEdges.from_features(edges, street.frame), {0: []})[0]
-    assert beside.bar(np.array([15.0, 35.0]), np.zeros(2)) and not beside.bar(np.array([15.0, 35.0]), np.full(2, 6.0))
+    assert beside.bars(np.array([[15.0, 35.0]] * 2), np.array([[0.0, 0.0], [6.0, 6.0]])).tolist() == [True, False]
     assert digest(beside) == digest(edges_beside(RoadEdges.from_features(edges, street.frame), {0: []})[0])

@@ -227,3 +227,19 @@ def test_the_disk_space_of_points_in_no_order_is_given_back_with_the_last_sectio
         store.section(0, number)
     gc.collect()
     assert waiting() is None
+
+
+def test_points_that_are_written_again_have_the_same_state_and_others_another():
+    made = records()
+
+    def states(points):
+        put, appended = SectionStore(SURVEY_POINT), SectionStore(SURVEY_POINT)
+        put.put(0, 0, points)
+        appended.append(0, points)
+        return [store.state((0, -10, 1000)) for store in (put, appended)]
+
+    moved = made.copy()
+    moved["z"][len(moved) // 2] += 1
+    assert states(made) == states(made.copy())
+    for other in (moved, made[:-1]):
+        assert all(before != after for before, after in zip(states(made), states(other)))
