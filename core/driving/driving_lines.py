@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d, uniform_fil
 
 from ..common.progress import Progress
 from ..countries.catalogue import Country, country
+from ..curves.robust import median
 from ..execution.in_step import in_step
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
@@ -135,7 +136,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
             status=LANE_STATUS[code], **track.said(rows),
             curve=element.arc if element is not None else course.curve, rmse=course.rmse, design_speed=speed,
             sigma=sigma[rows].mean(), station=start, end=end,
-            offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=vertices[::-1] if way < 0 else vertices)
+            offset=median(track.d[rows]), width=median(track.width[rows]), places=vertices[::-1] if way < 0 else vertices)
 
 
 def _cut_by_sigma(pieces, grid, sigma):

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from ..common.arrays import mask_runs
 from ..common.parallel import check_cancelled
+from ..curves.robust import median
 from ..markings.cross_section.evidence import driven_offsets
 from ..markings.cross_section.roads import EstimatedRoad
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
@@ -31,17 +32,16 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     `curbs`, `pavement` : edges of the pavement with and without a curb that were given to the estimate, or None. Lanes are numbered from 1 in the
     order of the tracks; `heights` : local z along each; `of_others` : lanes on the asphalt of this road that others have.
     """
-    rows = []
-    for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
+    rows, borders = [], [_sides(road, track, z, frame, number) for track, z in zip(tracks, heights)]
+    for lane, (track, sides) in enumerate(zip(tracks, borders), start=1):
         check_cancelled()
         for code, start, end in track_pieces(track, road.lines.s):
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
             if part.stop - part.start >= 2:
-                rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
+                rows.append(_area(road, curbs, track, part, sides, number) | dict(lane=lane, status=LANE_STATUS[code]))
     rows += _connectors_on_road(road.lines.s, tracks, heights, frame, number)
     if pavement is not None:
         lanes = max((row["lane"] for row in rows), default=0)
-        borders = [_sides(road, track, slice(0, len(track)), z, frame, number) for track, z in zip(tracks, heights)]
         strips = shoulders(road, tracks, borders, pavement, frame, number, of_others)
         rows += [row | dict(lane=lane) for lane, row in enumerate(strips, start=lanes + 1)]
     names: dict[int, int] = {}
@@ -52,31 +52,30 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     return rows
 
 
-def _sides(road, track, part, z, frame, number):
-    """The left and the right border of part of a lane along the road, (N, 3) local metres each."""
-    columns = np.arange(track.first, track.last + 1)[part]
-    s, d, half = road.lines.s[columns], track.d[part], track.width[part] / 2
-    sides = []
-    for side, row in ((1, track.left[part]), (-1, track.right[part])):
-        x, y = frame.roads[number].to_map(s, d + side * half)
+def _sides(road, track, z, frame, number):
+    """The left and the right border of a lane along the road, (N, 3) local metres each."""
+    columns, sides = track.stations, []
+    s, half = road.lines.s[columns], track.width / 2
+    for side, row in ((1, track.left), (-1, track.right)):
+        x, y = frame.roads[number].to_map(s, track.d + side * half)
         painted = (row >= 0) & (row < len(road.lines.d))
         line_z = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
-        sides.append(np.c_[x, y, np.where(np.isfinite(line_z), line_z, z[part])])
+        sides.append(np.c_[x, y, np.where(np.isfinite(line_z), line_z, z)])
     return sides
 
 
-def _area(road, curbs, track, part, z, frame, number):
-    """One piece of a lane: its borders as they are seen in the direction of travel."""
+def _area(road, curbs, track, part, sides, number):
+    """One piece of a lane, of which `sides` are those of the whole: its borders as they are seen in the direction of travel."""
     columns = np.arange(track.first, track.last + 1)[part]
     s, d = road.lines.s[columns], track.d[part]
-    sides = _sides(road, track, part, z, frame, number)
     borders = [_border(road, curbs, rows[part], uses[part], columns)
                for rows, uses in ((track.left, track.left_use), (track.right, track.right_use))]
+    sides = [side[part] for side in sides]
     if track.direction < 0:
         sides, borders = [side[::-1] for side in sides[::-1]], borders[::-1]
     return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=borders,
                 **track.said(part), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
-                width=float(np.median(track.width[part])))
+                width=median(track.width[part]))
 
 
 def _border(road, curbs, rows, separates, columns):

@@ -19,6 +19,7 @@ from ..markings.cross_section.sections import STATION_STEP
 from ..markings.cross_section.sequence import beside_island, lane_places
 from ..markings.cross_section.weights import BARE, DASHED, EDGE_LINE, SAME_LANE, SURFACE_END, UNPAINTED
 from ..markings.weights import ROADS
+from ..road.common.pseudo_scanlines import expand_ranges
 from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack, spans_of
 from .weights import ALIGNMENT, TRACKS
 
@@ -195,35 +196,76 @@ def _without_steps(parts):
 
 def _parts(boundaries, estimate, lane_width, line_distance):
     """(interval, LaneTrack) of the spans of which both borders are known."""
-    known = [borders for span in lane_spans(estimate) if (borders := _with_borders(boundaries, estimate.candidates, span))]
-    if not known:
+    spans, *borders, made_of = _borders_of(boundaries, estimate)
+    if not spans:
         return
-    spans, rows, left, right, made_of = zip(*known)
-    of = np.repeat(np.arange(len(spans)), [len(values) for values in left])
-    number, beside = np.array([span.count for span in spans]), np.array([span.beside for span in spans])
-    places = lane_places(np.concatenate(left), np.concatenate(right), *np.array(made_of).T[:, of], number[of], lane_width, beside[of])
-    bounds, parts = np.flatnonzero(np.diff(of)) + 1, []
-    for span, of_span, drawn, begin, width in zip(spans, rows, made_of, *(np.split(values, bounds) for values in places)):
-        part = _part(boundaries, span, of_span, drawn, begin, width, line_distance)
-        bare, apart = UNPAINTED[list(drawn)], span.beside[BEYOND] >= 0
-        # one lane has all the room between two borders, and beside an island
-        shared = span.count > 1 and (bare.any() or drawn == [DASHED, DASHED])
-        if shared or span.count == 1 and bare.any() and not (apart or bare.all() or beside_island(*drawn)):
-            part = _where_driven(part, boundaries.s, estimate, np.maximum(part.width - lane_width, 0.0), span.count, bare.any())
-        elif span.count == 1 and apart and SURFACE_END[list(drawn)].any():
-            drives, passes = _drives(part.stations, boundaries.s, estimate, (1, 0, -1))
-            drives = drives[passes < estimate.evidence.own]
-            part = replace(part, d=drives[np.abs(drives - part.d).mean(axis=1).argmin()])
-        parts.append((span, part))
-    for _, strip in groupby(parts, lambda one: (one[0].interval, one[0].left, one[0].right)):
+    apart, count = np.array([span.beside[BEYOND] >= 0 for span in spans]), np.array([span.count for span in spans])
+    some, every, dashed = UNPAINTED[made_of].any(axis=0), UNPAINTED[made_of].all(axis=0), (made_of == DASHED).all(axis=0)
+    # one lane has all the room between two borders, and beside an island
+    shared = np.where(count > 1, some | dashed, some & ~(apart | every | beside_island(*made_of)))
+    driven = (count == 1) & apart & SURFACE_END[made_of].any(axis=0) & ~shared
+    parts = _shares(boundaries, spans, *borders, made_of, lane_width, line_distance)
+    for k in np.flatnonzero(shared).tolist():
+        parts[k] = _where_driven(parts[k], boundaries.s, estimate, np.maximum(parts[k].width - lane_width, 0.0), spans[k].count, some[k])
+    for k in np.flatnonzero(driven).tolist():
+        drives, passes = _drives(parts[k].stations, boundaries.s, estimate, (1, 0, -1))
+        drives = drives[passes < estimate.evidence.own]
+        parts[k] = replace(parts[k], d=drives[np.abs(drives - parts[k].d).mean(axis=1).argmin()])
+    for _, strip in groupby(zip(spans, parts), lambda one: (one[0].interval, one[0].left, one[0].right)):
         yield from _shared(list(strip), estimate.weights.most_in_doubt)
+
+
+def _shares(boundaries, spans, rows, of, station, offset, made_of, lane_width, line_distance):
+    """[LaneTrack] of spans, each with its share of the strip between its borders; the others as `_borders_of` gives them."""
+    count, place, beside = (np.array([getattr(span, name) for span in spans]) for name in ("count", "place", "beside"))
+    begin, width = lane_places(*offset, *made_of[:, of], count[of], lane_width, beside[of])
+    painted, ragged, ends = boundaries.bounding[rows], SURFACE_END[made_of].any(axis=0), np.cumsum(np.bincount(of)).tolist()
+    beside_one, places = painted[0] ^ painted[1], [slice(*pair) for pair in zip([0, *ends], ends)]
+    for k in np.flatnonzero(beside_one & (ragged | bool(line_distance))).tolist():
+        # the end of the surface is ragged, a lane is not
+        even = 2 * line_distance or float(np.median(width[places[k]]))
+        begin[places[k]] += (even - width[places[k]]) * count[k] * (not painted[0, k])
+        width[places[k]] = even
+    d = begin - width * (count - place - 0.5)[of]
+    shown = (boundaries.seen[rows[:, of], station] & (painted | ~beside_one)[:, of]).sum(axis=0)
+    status = np.where(shown == 2, np.where((count == 1) & painted.any(axis=0), MEASURED, INFERRED)[of], np.where(shown == 1, INFERRED, BRIDGED))
+    # a curb that a lane reaches to shows its place too
+    reaches = (made_of == BARE).any(axis=0)
+    for k in np.flatnonzero(beside_one & ~ragged & ~reaches).tolist():
+        between = np.subtract(*boundaries.d[rows[:, k, None], station[places[k]]])
+        reaches[k] = np.nanmedian(np.abs(between - width[places[k]] * count[k])) < SAME_LANE
+    left, right = np.where(place == count - 1, rows[0], -1), np.where(place == 0, rows[1], -1)
+    values = [np.repeat(column, np.bincount(of)) for column in (beside_one & ~reaches, left, right, *(
+        np.array([getattr(span, name) for span in spans]) for name in ("left_border", "right_border", "probability", "confidence")))]
+    return [LaneTrack(int(station[part.start]), d[part], width[part], status[part], *(column[part] for column in values), span.direction,
+                      np.full(part.stop - part.start, span.second, object)) for span, part in zip(spans, places)]
+
+
+def _borders_of(boundaries, estimate):
+    """The spans of which both borders are known, S of them: these, the rows of their borders, (2, S), and of all N places of one after the other
+    the span, the station and the offsets of the borders, (2, N); and what the borders of each are made of, (2, S)."""
+    c, spans = estimate.candidates, lane_spans(estimate)
+    interval, rows = np.array([span.interval for span in spans], int), np.array([(span.left, span.right) for span in spans], int).reshape(-1, 2).T
+    of, station = expand_ranges(c.first[interval], c.last[interval] + 1)
+    offset = boundaries.d[rows[:, of], station]
+    size, number = np.bincount(of, minlength=len(spans)), np.stack([np.bincount(of, side, len(spans)) for side in np.isfinite(offset)])
+    for side, k in np.argwhere((number > 0) & (number < size)).tolist():
+        places = slice(*np.searchsorted(of, [k, k + 1]))
+        offset[side, places] = _filled(offset[side, places])
+    if not (known := number.all(axis=0)).all():
+        spans, rows, kept = [span for span, shown in zip(spans, known) if shown], rows[:, known], known[of]
+        of, station, offset = (np.cumsum(known) - 1)[of[kept]], station[kept], offset[:, kept]
+    pattern, kinds = boundaries.patterns[rows[:, of], station], BARE + 1
+    number = np.bincount(((of + [[0], [len(spans)]]) * kinds + pattern).ravel(), minlength=2 * len(spans) * kinds)
+    return spans, rows, of, station, offset, number.reshape(2, len(spans), kinds).argmax(axis=2)
 
 
 def _shared(strip, most):
     """(interval, LaneTrack) of the lanes of a strip. Where one lies off its share, those that nobody drove have a confidence of `most` at most."""
     uneven = len(strip) > 1 and np.any([part.offset for _, part in strip], axis=0)
     for span, part in strip:
-        yield span.interval, replace(part, confidence=np.where(uneven & ~part.offset, np.minimum(part.confidence, most), part.confidence))
+        yield span.interval, part if not np.any(uneven) else replace(
+            part, confidence=np.where(uneven & ~part.offset, np.minimum(part.confidence, most), part.confidence))
 
 
 def _where_driven(part, s, estimate, room, number, to_bare):
@@ -268,43 +310,10 @@ def _drives(stations, s, estimate, directions):
     return np.where(there[passes], np.array(offsets).reshape(-1, len(stations)), np.nan), passes
 
 
-def _with_borders(boundaries, candidates, span):
-    """A span, its stations, the offsets of its two borders there, and what these are made of; None where one of them is not known."""
-    rows, sides = slice(candidates.first[span.interval], candidates.last[span.interval] + 1), (span.left, span.right)
-    left, right = (_filled(boundaries.d[row, rows]) for row in sides)
-    if left is None or right is None:
-        return None
-    return span, rows, left, right, [int(np.bincount(boundaries.patterns[row, rows]).argmax()) for row in sides]
-
-
-def _part(boundaries, span, rows, made_of, begin, width, line_distance):
-    """The LaneTrack of a span: `begin` and `width` of its lanes as of `lane_places` at the stations `rows`, between what its borders are made of."""
-    sides = span.left, span.right
-    painted = [bool(boundaries.bounding[row]) for row in sides]
-    seen = np.stack([boundaries.seen[row, rows] for row in sides])
-    between_both = all(painted) or not any(painted)
-    beside_one = any(painted) and not between_both
-    if beside_one and (line_distance or SURFACE_END[made_of].any()):
-        # the end of the surface is ragged, a lane is not
-        even = np.full(len(width), 2 * line_distance or np.median(width))
-        begin, width = begin if painted[0] else begin + (even - width) * span.count, even
-    d = begin - width * (span.count - span.place - 0.5)
-    shown = seen.sum(axis=0) if between_both else seen[painted].sum(axis=0)
-    status = np.choose(shown, [BRIDGED, INFERRED, MEASURED if span.count == 1 and any(painted) else INFERRED])
-    # a curb that a lane reaches to shows its place too
-    reaches = BARE in made_of or beside_one and not SURFACE_END[made_of].any() \
-        and np.nanmedian(np.abs(boundaries.d[span.left, rows] - boundaries.d[span.right, rows] - width * span.count)) < SAME_LANE
-    left = span.left if span.place == span.count - 1 else -1
-    right = span.right if span.place == 0 else -1
-    values = (beside_one and not reaches, left, right, span.left_border, span.right_border, span.probability, span.confidence)
-    return LaneTrack(int(rows.start), d, width, status, *(np.full(len(d), value) for value in values), span.direction,
-                     np.full(len(d), span.second, object))
-
-
 def _filled(values):
     """Offsets with those that are missing at the ends of an interval."""
     finite = np.flatnonzero(np.isfinite(values))
-    return np.interp(np.arange(len(values)), finite, values[finite]) if len(finite) else None
+    return np.interp(np.arange(len(values)), finite, values[finite])
 
 
 def _followed(parts_of_lane, parts, first):

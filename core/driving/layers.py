@@ -15,6 +15,7 @@ from ..common.features import CURVE_ELEMENTS, DRIVING_LINES, LANES, Features
 from ..common.layer_rows import LayerRows, column
 from ..countries.catalogue import NEUTRAL, country
 from ..curves.base import Arc, Curve
+from ..curves.robust import median
 from ..survey.frame.road_frame import RoadFrame
 from .alignment import element_row
 
@@ -70,7 +71,7 @@ class Lanes(LayerRows):
     def width(self) -> np.ndarray:
         """(P,) metres, median in plan between the borders."""
         widths = np.hypot(*(self.left - self.right)[:, :2].T)
-        return np.array([np.median(widths[a:b]) for a, b in zip(self.start[:-1], self.start[1:])])
+        return np.array([median(widths[a:b]) for a, b in zip(self.start[:-1], self.start[1:])])
 
     @property
     def length(self) -> np.ndarray:

@@ -20,10 +20,9 @@ from .adjustment.trajectory_fit import fitted_trajectory
 from .blocks import PointChoice, read_files
 from .frame.road_frame import RoadFrame, build_frame, decimate_by_distance, runs_through
 from .frame.row_table import SigmaAlong
-from .las.parallel_reader import ParallelCloudReader
 from .las.point_fields import check_coloured, in_one_scale, intensity_source_of, without_intensity
 from .las.reader import CloudHeader, read_headers, states_of
-from .las.samples import check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, without_copies
+from .las.samples import FileSample, check_measured_once, coarse_coordinates, distinct_rows, may_overlap, sample_files, times_of, without_copies
 from .own_track import check_own_track
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
 from .store.section_store import SectionStore
@@ -99,15 +98,15 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     or time.
     """
     check_coloured(files, settings.intensity_from)
+    samples = sample_files(files, reading)
     crs = _metric_crs(files, trajectory, settings, progress)
     trajectory = reproject_trajectory(trajectory, crs)
     refuse_standstill(trajectory)
-    trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
+    trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress, samples)
     if time_note:
         (progress.warn if len({file.has_time for file in files}) > 1 else progress.info)(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, time_note, progress)
-    samples = sample_files(files)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from, np.c_[trajectory.x, trajectory.y])
     intensity, rounding = _intensity_source(samples, settings, one_scale, progress)
     folder = reading.folder
@@ -275,9 +274,10 @@ def _tell_scanners_apart(survey, read, progress):
 
 
 def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
-                 progress: Progress) -> tuple[Trajectory, str, bool, bool]:
+                 progress: Progress, samples: Sequence[FileSample] | None = None) -> tuple[Trajectory, str, bool, bool]:
     """The trajectory in the time system of the cloud, and a note for the log, "" without one; RoadExtractionError if their times do not overlap.
 
+    samples : of the files, where these were looked at before; None to look at their times here
     The last two say whether points can be assigned to passes by their time, and whether the GPS week ends during the scan.
     """
     if not trajectory.has_time:
@@ -286,8 +286,7 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
         missing = [file.path for file in files if not file.has_time]
         which = "The point cloud has" if len(missing) == len(files) else f"{len(missing)} of {len(files)} files, such as {missing[0]}, have"
         return trajectory, f"{which} no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    clouds = ParallelCloudReader(("gps_time",))   # a few points of every file that has any, its last ones among them
-    sampled = [(file.path, np.concatenate([time[np.isfinite(time)] for time in clouds.times(file)])) for file in files if file.count]
+    sampled = [(file.path, times_of(file)) for file in files if file.count] if samples is None else [(one.file.path, one.times) for one in samples]
     times = np.concatenate([time for _, time in sampled])
     if not len(times) or times.max() <= times.min():
         return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False

@@ -239,7 +239,7 @@ def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
     s = STATION_STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
-    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
+    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), median(lines[key][0].d), key))
     names = sorted({p.pattern for pieces in lines.values() for p in pieces})
     rows = []
     for key in order:

@@ -124,14 +124,13 @@ def _quadrics(off, count):
     H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5) of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame
     of the neighbours' principal directions; NaN with fewer than 12 neighbours, or if these lie in one or two lines.
     """
-    values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
+    normal, right = np.empty((len(count), 6, 6)), np.empty((len(count), 6))
     radius, terms = CURVATURE_KERNEL, np.ones((7, int(count.max())))
-    scale = np.array([[radius], [radius], [1.0]])
+    scale, neighbourhoods = np.array([[radius], [radius], [1.0]]), np.split(off, np.cumsum(count)[:-1])
     # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
-    for k, (first, number) in enumerate(zip(np.cumsum(count) - count, count)):
-        neighbours = off[first:first + number]
-        centred = neighbours - neighbours.mean(axis=0)
-        values[k], frame = np.linalg.eigh(centred.T @ centred)
+    centred = [neighbours - neighbours.mean(axis=0) for neighbours in neighbourhoods]
+    values, frames = np.linalg.eigh(np.stack([places.T @ places for places in centred]))
+    for k, (neighbours, frame, number) in enumerate(zip(neighbourhoods, frames, count)):
         design = terms[:, :number]
         # in units of the kernel, so that the six columns weigh alike
         u, v, w = (frame.T[::-1] / scale) @ neighbours.T

@@ -398,5 +398,5 @@ def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: i
         yield dict(
             kind="", pattern=piece.pattern, status=piece.status,
             curve=line.curve, arc=arc, places=np.c_[places[:, :2], places[:, 2] + track],
-            station=piece.first, end=piece.last, offset=np.median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
+            station=piece.first, end=piece.last, offset=median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
             rmse=rmse if piece.status == "measured" else np.nan)

@@ -220,8 +220,9 @@ def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wa
     wanted : one of INTENSITY_SOURCES
     drive : (M, 2) m, places of the vehicle. What lies far from it is weaker in any scale, so only points near it are compared; None compares all.
     """
+    tree = None if drive is None else cKDTree(drive)
     usual = {sample.file.path: float(np.median(values)) for sample in samples
-             if len(values := _near(sample, drive)) >= LAS.least_compared and values.min() < values.max()}
+             if len(values := _near(sample, tree)) >= LAS.least_compared and values.min() < values.max()}
     brightest = max(usual, key=lambda path: usual[path], default="")
     factors: dict[str, int] = {}
     other: list[str] = []
@@ -248,10 +249,10 @@ def in_one_scale(files: Sequence[CloudHeader], samples: Sequence[FileSample], wa
 
 
 def _near(sample, drive):
-    """The intensities above 0 of the points of a FileSample near the drive; of all points where that is None."""
+    """The intensities above 0 of the points of a FileSample near the places of a tree, the drive; of all points where that is None."""
     near = sample.intensity > 0
     if drive is not None:
-        near &= np.isfinite(cKDTree(drive).query(sample.places, distance_upper_bound=LAS.near_drive)[0])
+        near &= np.isfinite(drive.query(sample.places, distance_upper_bound=LAS.near_drive)[0])
     return sample.intensity[near]
 
 

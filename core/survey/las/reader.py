@@ -353,6 +353,7 @@ def _same_unit(crs, factor):
     return abs(crs.axis_info[0].unit_conversion_factor / factor - 1.0) < IO.same_unit
 
 
+@lru_cache(maxsize=256)
 def _length(code, size):
     """(metres, name) of a unit of length by its EPSG code, or its size where it has none; (None, "") where it is not said."""
     from pyproj.database import get_units_map

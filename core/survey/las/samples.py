@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import gcd
 
@@ -11,16 +12,21 @@ import numpy as np
 import shapely
 
 from ...common.errors import RoadExtractionError
+from ...execution.phase import THREADS, Executor, NoSource, Phase
 from ..weights import LAS
 from .parallel_reader import ParallelCloudReader
-from .reader import CloudHeader, read_blocks
+from .reader import CloudHeader, read_blocks, states_of
 
 
 @dataclass(frozen=True)
 class FileSample:
-    """N points of a file: (N, 3) int64 places as stored, (N, 2) m on the map, (N,) uint16 intensities, (N,) extra fields with one number a point."""
+    """N points of a file: (N, 3) int64 places as stored, (N, 2) m on the map, (N,) uint16 intensities, (N,) extra fields with one number a point.
+
+    times : (T,) s, finite gps_time of a few points, the last ones among them; none where points have no time
+    """
 
     file: CloudHeader
+    times: np.ndarray
     raw: np.ndarray
     places: np.ndarray
     intensity: np.ndarray
@@ -32,18 +38,28 @@ class FileSample:
         return np.array([_step(values) for values in self.raw.T]) * np.abs(self.file.scales)
 
 
-def sample_files(files: Sequence[CloudHeader]) -> list[FileSample]:
-    """Samples of the files that have points; RoadExtractionError where one cannot be read."""
-    samples, reader = [], ParallelCloudReader(("z", "intensity", "all_extra_bytes"))
-    for file in files:
-        if file.count:
-            rows = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
-            starts = sorted({reader.chunk_start(file, row) for row in rows})
-            parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
-            raw, places, intensity = (np.concatenate([part[k] for part in parts]) for k in range(3))
-            fields = {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}
-            samples.append(FileSample(file, raw, places, intensity, fields))
-    return samples
+def sample_files(files: Sequence[CloudHeader], executor: Executor = THREADS) -> list[FileSample]:
+    """Samples of the files that have points, which the executor looks at; RoadExtractionError where one cannot be read."""
+    filled = [file for file in files if file.count]
+    phase = Phase(_sample_of_file, NoSource(), (), lambda file: file.path, state=lambda file: states_of([file]))
+    seen = executor.run(phase, [replace(file, path=os.path.abspath(file.path), crs="") for file in filled])
+    return [FileSample(file, *sample) for file, sample in zip(filled, seen)]
+
+
+def _sample_of_file(source: NoSource, file: CloudHeader) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """The phase that looks at a file: all but the first of FileSample."""
+    reader = ParallelCloudReader(("z", "intensity", "all_extra_bytes"))
+    rows = np.linspace(0, file.count - 1, LAS.sampled_places).astype(int).tolist()
+    starts = sorted({reader.chunk_start(file, row) for row in rows})
+    parts = [_sample(next(reader.following(file, start, LAS.points_per_sample))) for start in starts]
+    raw, places, intensity = (np.concatenate([part[k] for part in parts]) for k in range(3))
+    return times_of(file), raw, places, intensity, {name: np.concatenate([part[3][name] for part in parts]) for name in parts[0][3]}
+
+
+def times_of(file: CloudHeader) -> np.ndarray:
+    """As of FileSample, of a file that has points."""
+    times = ParallelCloudReader(("gps_time",)).times(file) if file.has_time else ()
+    return np.concatenate([np.empty(0), *(time[np.isfinite(time)] for time in times)])
 
 
 def _sample(points):
@@ -156,11 +172,13 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
-    order = np.argsort(time, kind="stable")
-    ordered = time[order]
-    alike = ordered[1:] == ordered[:-1]
-    rows = order[(np.append(False, alike) | np.append(alike, False))[:len(order)]]
-    # few points are measured at one time, unless by a scanner of many beams
+    # copies share a hash, which few others do: Knuth's multiplicative one, by 2**64 over the golden ratio; beyond 64 bits numbers start again from 0
+    factor, shift = np.uint64(0x9E3779B97F4A7C15), np.uint64(29)
+    mixed = (np.asarray(time, float) + 0.0).view(np.uint64)
+    for axis in place.T:
+        mixed = (mixed ^ (mixed >> shift)) * factor + axis.astype(np.int64).view(np.uint64)
+    ordered = np.sort(mixed)
+    rows = np.flatnonzero(np.isin(mixed, ordered[1:][ordered[1:] == ordered[:-1]]))
     rows = rows[np.lexsort((*place[rows].T, time[rows]))]
     repeated = (time[rows[1:]] == time[rows[:-1]]) & (place[rows[1:]] == place[rows[:-1]]).all(axis=1)
     return np.delete(np.arange(len(time)), rows[1:][repeated])
@@ -179,10 +197,12 @@ def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
         pairs = np.flatnonzero(ordered[later:] == ordered[:-later])
         if len(pairs) < LAS.least_doubled * len(time):
             return
-        apart = place[order[pairs + later]] - place[order[pairs]]
-        apart *= np.where(apart[:, [int(np.abs(apart).sum(axis=0).argmax())]] < 0.0, -1.0, 1.0)   # whichever of the two comes first
-        east, north, up = usual = np.median(apart, axis=0)
-        alike = (np.abs(apart - usual) < LAS.coarse_coordinates).all(axis=1).sum()
+        first, second = order[pairs], order[pairs + later]
+        apart = [axis.take(second) - axis.take(first) for axis in place.T]
+        way = np.where(max(apart, key=lambda along: np.abs(along).sum()) < 0.0, -1.0, 1.0)   # whichever of the two comes first
+        apart = [along * way for along in apart]
+        east, north, up = usual = [float(np.median(along)) for along in apart]
+        alike = np.count_nonzero(np.all([np.abs(along - middle) < LAS.coarse_coordinates for along, middle in zip(apart, usual)], axis=0))
         if alike > max(LAS.most_of_pairs * len(pairs), LAS.least_doubled * len(time)) and np.linalg.norm(usual) > LAS.coarse_coordinates:
             raise RoadExtractionError(f"About {200 * alike / len(time):.0f} % of the points were given twice, {east:+.2f} m east, {north:+.2f} m "
                                       f"north and {up:+.2f} m up of each other, as of one drive in two datums. Give one of its exports.")
