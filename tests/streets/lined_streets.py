@@ -18,13 +18,14 @@ class Street:
 
     Stations are those of the axis, offsets are left positive. The vehicle drives
     the whole length at offset `vehicle`, backwards with `backwards`; `again` are the
-    offsets of later passes, driven the other way.
+    offsets of later passes, driven the other way, `along` of passes driven the same way.
     """
 
-    def __init__(self, length=120.0, radius=None, vehicle=-1.75, backwards=False, again=()):
+    def __init__(self, length=120.0, radius=None, vehicle=-1.75, backwards=False, again=(), along=()):
         self.length, self.radius = length, radius
         drives = [self._drive(vehicle, backwards, 0.0)]
-        drives += [self._drive(offset, not backwards, 1000.0 * (k + 1)) for k, offset in enumerate(again)]
+        later = [(offset, not backwards) for offset in again] + [(offset, backwards) for offset in along]
+        drives += [self._drive(offset, back, 1000.0 * (k + 1)) for k, (offset, back) in enumerate(later)]
         time, x, y = (np.concatenate(parts) for parts in zip(*drives))
         self.frame = build_frame(Trajectory(time, x, y, np.full(len(x), HEIGHT + 2.5)))
         self.lines = Features("LineStringZ", MARKING_LINES)

@@ -36,7 +36,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import BARE, CENTRE_LINE, DASHED, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 500   # derived: stations that are looked at together, 250 m of road: what is chosen from takes 0.2 MB for each interval
@@ -141,7 +141,7 @@ def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int,
     candidates, evidence, first_direction, count, known, left = item
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
-    sections.cost += _roads_of_many_lanes(candidates, sections, evidence.divided, weights)
+    sections.cost += _roads_of_many_lanes(candidates, sections, evidence, weights)
     return (sections[:count], misnamed_costs(candidates, sections, weights)[:count],
             transitions(candidates, sections, known, lane_width, left, weights))
 
@@ -186,7 +186,7 @@ def _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, 
         sections.cost[interval] += np.where(fits, 0.0, weights.not_taken)
 
 
-def _roads_of_many_lanes(c, sections, divided, weights):
+def _roads_of_many_lanes(c, sections, evidence, weights):
     """(I, K) nats of how many lanes lead which way."""
     strips = lane_strips(sections)
     total, ahead = np.zeros((2, *sections.cost.shape))
@@ -200,12 +200,8 @@ def _roads_of_many_lanes(c, sections, divided, weights):
     cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
     cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
     cost = np.where(~one_way & (total == 3), weights.two_and_one, cost)
-    cost = np.where(divided[:, None], np.where(one_way | (total == 0), 0.0, weights.two_way_carriageway), cost)
-    # where there are more than two lanes, dashes do not part the directions
-    kind_right = np.where(sections.right >= 0, np.take_along_axis(sections.strip, np.maximum(sections.right, 0), axis=2), -1)
-    parts = (sections.strip == FIRST) & (kind_right == SECOND)
-    drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
-    cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
+    cost = np.where(evidence.divided[:, None], np.where(one_way | (total == 0), 0.0, weights.two_way_carriageway), cost)
+    cost += np.where(evidence.again_one_way[:, None] & ~one_way & (total > 0), weights.never_back, 0.0)
     # what nobody drives on between lines of lanes, as a median, parts the directions, above all what is too narrow for a lane
     before = strips_before(sections)
     i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)) & np.isin(before, (FIRST, SECOND)))

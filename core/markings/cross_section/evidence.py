@@ -21,7 +21,7 @@ from ...survey.store.road_points import RoadPoints
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..road_grid import CELL_SIZE
-from ..weights import EVIDENCE
+from ..weights import EVIDENCE, LANES, SECTIONS
 from .candidates import Candidates
 from .sections import STATION_STEP
 from .weights import BARE, UNPAINTED
@@ -46,6 +46,13 @@ class Evidence:
     bare: np.ndarray   # (I,) bool, where it was driven between two borders without any paint
     own: int | None = None   # how many of the passes are the road's own; None for all
     taken: tuple[tuple[int, float, tuple[tuple[float, float, int], ...]], ...] = ()
+
+    @property
+    def again_one_way(self) -> np.ndarray:
+        """(I,) bool, where the road's own passes drove more than once, and all of them the same way."""
+        driven = np.isfinite(self.driven[:self.own])
+        number = driven.sum(axis=0)
+        return (number > 1) & (np.abs(self.directions[:self.own] @ driven) == number)
 
     def part(self, first: int, end: int) -> Evidence:
         """That of the intervals from `first` to `end` (exclusive)."""
@@ -222,6 +229,10 @@ def _stop_lines(candidates, s, markings, road):
     stops, extents = [], markings.extent[(markings.road == road) & (markings.kind == "stop")]
     for first, last, low, high in extents[np.isfinite(extents[:, 0])]:
         ahead = np.maximum(first - end, 0.0) - np.maximum(begin - last, 0.0)
+        # its lanes lead up to it from where most of the lines beside and between them end, dashes up to a gap before it
+        lines = (candidates.painted & (candidates.left > low - LANES.stop_margin) & (candidates.right < high + LANES.stop_margin)).sum(axis=1)
+        lines[np.abs(ahead) > SECTIONS.max_dash_gap] = 0
+        ahead -= ahead[np.lexsort((np.abs(ahead), -lines))[0]] * (lines.max() > 0)
         stops += [(k, low, high, ahead[k]) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
     return np.array(stops).reshape(-1, 4)
 

@@ -411,7 +411,10 @@ def _boundary_costs(c, stops, first_direction, w):
     scale = c.observations(w)[:, None]
     table = w.boundary[c.made_of]
     middle = (c.left + c.right) / 2
-    stopped = _stops_across(_at_stop(stops), middle)
+    half = NEUTRAL.narrowest_lane / 2
+    stopped, on_left, on_right = (_stops_across(_at_stop(stops), middle + aside) for aside in (0.0, half, -half))
+    # the lane on the outer side has a stop line, the one on the inner side has none
+    outer_alone = {FIRST: (on_left > 0) & (on_right == 0), SECOND: (on_right > 0) & (on_left == 0)}
     wide = np.nan_to_num(c.wide)[..., None]
     table = np.where(wide > 0, (1 - wide) * table + wide * w.wide_line[c.made_of.clip(SOLID, DASHED)], table)
     solid = (c.made_of == SOLID)[..., None]
@@ -426,7 +429,7 @@ def _boundary_costs(c, stops, first_direction, w):
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
                 cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \
-                    + w.split_stop * stopped * (use == CENTRE_LINE)
+                    + w.split_stop * stopped * (use == CENTRE_LINE) + w.outer_stopped * outer_alone.get(left, 0.0) * (left == right)
     # other lines may be none, and what else lies where nobody drives bounds nothing
     cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(
         c.painted, np.minimum(table[:, :, OTHER_LINE], w.paint_in_rest * _told(c)), 0.0)

@@ -88,19 +88,22 @@ class EstimateWeights:
     # of a solid line between lanes before their stop line, whichever way they lead, where it is not to be crossed
     solid_at_stop: float = _costs(0.6)[0]
     rest_at_stop: float = 4.0   # of a stop line as broad as a lane where no lane is
+    # of two lanes beside each other that lead the same way, of which the outer one alone has a stop line: so for one in twenty
+    outer_stopped: float = 3.0
     split_stop: float = 4.0   # of a stop line across the border between the directions: no authority paints one, of fifty one is another bar
     change: float = 0.5   # of a metre across that becomes lane, or ceases to be one
     turn: float = 3.0   # of one that changes its direction
     divider_change: float = 1.5   # of a border between lanes that begins or ends
     lanes_remembered: float = 10.0   # m without any line, as over a junction, that leave a third of what was known of lanes,
     directions_remembered: float = 40.0   # and of directions
-    one_way: tuple[float, ...] = (0.4, 1.2, 0.3, 1.2)   # of one, two, three, four lanes and more that all lead one way
+    one_way: tuple[float, ...] = (0.4, 1.2, 0.6, 1.0)   # of one, two, three, four lanes and more that all lead one way
     uneven: float = 1.2   # of directions whose numbers of lanes differ by two and more
     median_within: float = 2.3   # of a strip too narrow for a lane between lanes of one direction: of ten medians nine part the directions
     median_between: float = 0.5   # by what a strip between lines where nobody drives costs less between the directions than elsewhere
-    two_and_one: float = 0.4   # of two lanes one way and one the other
+    two_and_one: float = 0.2   # of two lanes one way and one the other
     two_way_carriageway: float = 4.0   # of two directions on one of two carriageways
-    dashed_between_many: float = 1.5   # of dashes between the directions of a road of more than two lanes
+    # of two directions where a road was driven more than once, but never back: over `repeats` as of one in five that are surveyed like that
+    never_back: float = 0.25
     left_hand: float = 0.7   # of traffic on the left, against traffic on the right, where the place is not known
     # of traffic on the side that is not that of the country there: of four hundred surveys one is of private grounds, or its CRS is another
     foreign_side: float = 6.0

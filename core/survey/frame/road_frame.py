@@ -453,7 +453,7 @@ def _shared_with(road, line, track, moved, rows):
     if not along.all():
         along = ~_fill_runs(~along, shortest)
     for i, j in _runs(along):
-        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= FRAME.same_carriageway:
+        if along[i] and np.median(np.nan_to_num(np.abs(d[i:j]), nan=np.inf)) > FRAME.same_carriageway:
             along[i:j] = False
         elif along[i]:
             first, last = _without_leaps(s[i:j], shortest, i > 0, j < len(along))

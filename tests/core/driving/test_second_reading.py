@@ -88,6 +88,14 @@ def test_dashes_with_the_drive_on_the_usual_side_surely_part_the_directions(crs,
     assert all(row["other"] is None and row["confidence"] > 0.9 for row in found.values())
 
 
+def test_a_road_that_was_driven_twice_and_never_back_may_be_one_way():
+    """As a carriageway with two lanes, of which the right one was driven."""
+    once, twice = (readings(Street(length=400.0, vehicle=-1.75, along=along).paint(3.5, kind="edge").paint(0.0, kind="", pattern="dashed")
+                            .paint(-3.5, kind="edge")) for along in ((), (-1.6,)))
+    assert once[1.75]["confidence"] > 0.9 and once[1.75]["other"] is None
+    assert twice[1.75]["confidence"] <= 0.6 and other_lanes(twice[1.75], -1.75) == [(1.75, 3.5, -twice[1.75]["direction"])]
+
+
 @pytest.mark.parametrize("again", [True, False])
 @pytest.mark.parametrize("curb, driven, middle", [(3.9, 1.95, 1.95), (4.3, 2.15, 2.15), (5.0, 2.5, 2.5), (4.0, 1.7, 1.75), (5.6, 1.65, 1.7)])
 def test_beside_a_curb_a_lane_has_the_room_in_whose_middle_one_drives_and_so_has_the_one_across(curb, driven, middle, again):

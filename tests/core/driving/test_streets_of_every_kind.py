@@ -185,6 +185,19 @@ def test_a_stop_line_across_two_lanes_says_that_they_lead_one_way():
     assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, -0.1, "stop"))) == {-1.75: 1, 1.75: -1}
 
 
+@pytest.mark.parametrize("before", [0.5, 8.0])
+@pytest.mark.parametrize("mirror", [1, -1])
+def test_of_three_lanes_parted_by_dashes_alone_those_that_a_stop_line_crosses_lead_up_to_it_and_no_other(mirror, before):
+    """Driven in the middle one. The last dash ends half a metre before the stop line, or as far as a gap is long."""
+    street = Street(vehicle=0.0).paint(5.25, kind="edge").paint(-5.25, kind="edge")
+    for offset in (1.75, -1.75):
+        street.paint(offset, last=108.0 - before, kind="", pattern="dashed")
+    side = {"traffic_side": "right" if mirror > 0 else "left"}
+    two, three = (painted(street, (108.0, 108.5, *sorted(np.multiply(mirror, ends)), "stop")) for ends in ((-5.1, 1.7), (-5.1, 5.1)))
+    assert lanes_of(street, markings=two, **side) == {-3.5 * mirror: 1, 0.0: 1, 3.5 * mirror: -1}
+    assert lanes_of(street, markings=three, **side) == {-3.5 * mirror: 1, 0.0: 1, 3.5 * mirror: 1}
+
+
 @pytest.mark.parametrize("edge", [4.8, 5.6])
 def test_the_curbs_of_an_island_bound_the_lanes_beside_it(edge):
     """Two lanes without a line between, and along them an island of 2.6 m whose line goes round it and closes.
@@ -369,10 +382,9 @@ def test_on_either_side_of_a_median_without_paint_there_is_a_lane_where_it_was_d
                                      (pytest.approx(inner, abs=0.02), -1), (pytest.approx(outer, abs=0.02), -1)]
 
 
-def test_between_dashes_and_a_curb_that_is_a_lane_away_there_may_be_one_though_nobody_drove_there():
+def test_between_dashes_and_a_curb_that_is_a_lane_away_there_is_one_though_nobody_drove_there():
     street = Street(length=80.0, vehicle=0.0, again=(3.6,)).paint(1.85, kind="", pattern="dashed").paint(-1.9, kind="", pattern="dashed")
-    found = {round(float(np.median(street.offsets(line)))): row["confidence"] for line, row in street.lanes(edges=curbs(street, 5.6, -5.6))[0]}
-    assert sorted(found) == [-4, 0, 4] and found[-4] <= 0.6
+    assert {round(offset): way for offset, way in lanes_of(street, edges=curbs(street, 5.6, -5.6)).items()} == {-4: 1, 0: 1, 4: -1}
 
 
 def test_two_arrows_show_a_turning_lane_beyond_a_solid_line_beside_the_curb():

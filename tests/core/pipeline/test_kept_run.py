@@ -129,8 +129,10 @@ def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path
         return run(self, phase, items, *others)
 
     _, road_map = made(street, tmp_path, kept, settings=settings)
+    corrections = moved_edge(road_map, 2.0)
+    alone, _ = made(street, tmp_path, corrections=corrections, settings=settings)
     monkeypatch.setattr(Threads, "run", noting)
-    made(street, tmp_path, kept, moved_edge(road_map, 2.0), settings)
+    assert made(street, tmp_path, kept, corrections, settings)[0] == alone
     _, again = made(street, tmp_path, kept, settings=settings)
     stretches = len(again.road_points.stretches())
     for name in ("surface_points", "corrected_of_stretch"):
