@@ -96,7 +96,7 @@ class EstimateWeights:
     divider_change: float = 1.5   # of a border between lanes that begins or ends
     lanes_remembered: float = 10.0   # m without any line, as over a junction, that leave a third of what was known of lanes,
     directions_remembered: float = 40.0   # and of directions
-    one_way: tuple[float, ...] = (0.4, 1.2, 0.6, 1.0)   # of one, two, three, four lanes and more that all lead one way
+    one_way: tuple[float, ...] = (0.4, 1.2, 0.6, 0.4)   # of one, two, three, four lanes and more that all lead one way
     uneven: float = 1.2   # of directions whose numbers of lanes differ by two and more
     median_within: float = 2.3   # of a strip too narrow for a lane between lanes of one direction: of ten medians nine part the directions
     median_between: float = 0.5   # by what a strip between lines where nobody drives costs less between the directions than elsewhere

@@ -172,6 +172,20 @@ def test_of_three_lanes_parted_by_dashes_alone_and_driven_in_the_middle_the_one_
     assert all(found[offset]["confidence"] > 0.9 and found[offset]["direction"] == 1 for offset in set(found) - open_lanes)
 
 
+@pytest.mark.parametrize("mirror", [1, -1])
+@pytest.mark.parametrize("vehicle", [-5.25, -1.75])
+def test_of_four_lanes_parted_by_dashes_alone_all_lead_as_one_drove_and_those_beyond_the_middle_may_come(vehicle, mirror):
+    """As a carriageway of a motorway: a line, and often two, parts the directions of four lanes."""
+    street = Street(length=400.0, vehicle=vehicle * mirror).paint(7.0, kind="edge").paint(-7.0, kind="edge")
+    for offset in (3.5, 0.0, -3.5):
+        street.paint(offset, kind="", pattern="dashed")
+    rows = {round(float(np.median(street.offsets(line))) * mirror, 2): row
+            for line, row in street.lanes(traffic_side="right" if mirror > 0 else "left")[0]}
+    assert {offset: (row["direction"], row["confidence"] > 0.9) for offset, row in rows.items()} \
+        == {-5.25: (1, True), -1.75: (1, True), 1.75: (1, False), 5.25: (1, False)}
+    assert all(row["other"] and row["confidence"] > 0.5 for offset, row in rows.items() if offset > 0)
+
+
 @pytest.mark.parametrize("half", [0.1, 0.15])
 def test_a_double_line_parts_the_directions_of_a_broad_street_that_was_driven_in_its_outermost_lanes(half):
     """As in the United States, where both lines are 10 cm wide and as far apart. Between the drives there is no end of the road."""
