@@ -182,7 +182,7 @@ def corrections(dock):
     wait(1)
     dock.go(dock.road_map)
     line = dock.place.pieces[0].line
-    dock.begin_draw("edge")
+    dock.begin("draw", "edge")
     to_map = QgsCoordinateTransform(dock.place.crs, iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
     for share in (0.1, 0.5, 0.9):
         dock.tool.add(to_map.transform(line.interpolate(share * line.length()).asPoint()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -264,7 +265,7 @@ class AsphaltTable:
         kind = np.where(spread[FROM_VEHICLE] < 0.9 * spread[ACROSS_TRACK], FROM_VEHICLE, ACROSS_TRACK)
         rows = kind, np.arange(len(kind))
         median, sigma, weight = median[rows], sigma[rows], weight[rows]
-        usable = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
+        usable = np.isfinite(median) & ~_mixed(median, sigma / np.maximum(median, 1e-9))
         reference = weighted_median(median[usable], weight[usable])
         # beyond the last level nothing tells how asphalt goes on: how far that is must not turn on the density of the points
         joined = _sparse_bins_joined(histograms[rows])
@@ -322,14 +323,22 @@ def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
     return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])
 
 
-def _mixed(spread):
-    """Bins whose relative spread stands out from their neighbours': a line painted at one distance fills much of them."""
-    n = ASPHALT.mixed_bin_neighbours
-    around = np.stack([np.roll(np.pad(spread, ((0, 0), (n, n)), constant_values=np.nan), k, axis=1)[:, n:-n] for k in range(-n, n + 1)])
-    finite = np.isfinite(spread)  # so that each has at least one neighbour: itself
-    mixed = np.zeros(spread.shape, bool)
-    mixed[finite] = spread[finite] > ASPHALT.mixed_bin_spread * np.nanmedian(around[:, finite], axis=0)
-    return mixed
+def _mixed(level, spread):
+    """Bins that stand out from their neighbours: a line painted at one distance fills much of them and scatters, or a gutter fills them, which is
+    brighter than the lines through pairs of neighbours by as much as paint is."""
+    reach = ASPHALT.mixed_bin_neighbours
+
+    def around(values):
+        padded = np.pad(values, ((0, 0), (reach, reach)), constant_values=np.nan)
+        return {k: np.roll(padded, -k, axis=1)[:, reach:-reach] for k in range(-reach, reach + 1)}
+
+    logarithm, usual = around(np.log(np.maximum(level, 1e-9))), np.full((2, *level.shape), np.nan)
+    lines = [(logarithm[i] * j - logarithm[j] * i) / (j - i) for i, j in combinations(sorted(logarithm), 2) if i and j]
+    for values, result, method in zip((list(around(spread).values()), lines), usual, ("linear", "lower")):
+        some = np.isfinite(values).any(axis=0)
+        result[some] = np.nanquantile(np.stack(values)[:, some], 0.5, axis=0, method=method)
+    with np.errstate(invalid="ignore"):
+        return (spread > ASPHALT.mixed_bin_spread * usual[0]) | (level > (1.0 + ASPHALT.paint_sigmas * usual[0]) * np.exp(usual[1]))
 
 
 def _sparse_bins_joined(histograms):

@@ -445,13 +445,16 @@ class RIMS:
     worn_gap: float = 0.80   # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
     band_cells: int = 2   # bands of 8 cm inwards from the rim
     gutter_bands: int = 9   # 0.72 m: no gutter is wider
-    min_gutter_bands: int = 3   # that a gutter has at least
     coarse_cells: int = 5   # shares and levels are taken in squares of 20 cm
     rim_reach: float = 2.5   # m of rim either way along which a gutter must be bright
     min_bright_share: float = 0.65   # of the cells of a band
     min_cells_seen: int = 20   # of a band along `rim_reach` either way
     gutter_brightness: float = 1.5   # spreads above asphalt
-    paint_to_gutter: float = 1.8   # times as bright as the cells between it and the rim: paint beside the gutter
+    # Nats by which a strip along the rim is more likely a gutter than a line.
+    per_gutter_width: float = 25.0   # for each metre that it is broader than a line there: widths are known to 4 cm,
+    line_at_rim: float = 0.18   # m, a broad one
+    per_paleness: float = 4.0   # for paint that is all of the brightness above asphalt brighter; worn lines lack a quarter of it
+    gutter: float = 1.0   # against one: what is as broad as a line and as bright is a line
     road_gap_along: int = 15   # cells: smaller gaps between points belong to the road
     # Rims of what is bright and broad.
     beside: tuple[int, int] = 5, 2   # cells from a piece: what lies beside it, less what the image blurs

@@ -35,6 +35,7 @@ class FRAME:
     sigma_cut_factor: float = 2.0   # times the uncertainty of the stretch beside it, and
     least_sigma_change: float = 0.010   # m more or less, that a stretch of a line is cut off for
     max_node_steps: int = 3   # from node to node, for the few points whose node is not found in one step from the node of the vehicle
+    least_leap: float = 10.0   # m of station between neighbouring positions on one road, from which on they are on two parts of it
     max_node_leap: float = 300.0   # nodes per step at most
     closed_form_bend: float = 0.55   # of the radius of a bend, to its inner side: validity of the closed form
     bend_stretch: tuple[float, float] = (0.4, 2.5)   # limits of the ratio of along-track distance to station difference in a bend

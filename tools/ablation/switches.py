@@ -230,7 +230,7 @@ ROWS = (
         ("ground around a spot of photographs", "scatter:ScannerScatter.photographed_windows", gives(set()), "brightness from photographs",
          "/markings.paint.photographs:bright_spots")),
     *_room("paint", "markings",
-        ("gutters", "paint.not_paint:gutter_cells", none_of(), "urban street with concrete gutters"),
+        ("gutters", "paint.not_paint:gutter_level", gives(np.float32(0.0)), "urban street with concrete gutters"),
         ("local level of asphalt", "paint.asphalt_level:background", gives(np.float32(0.0))),
         ("bright patches", "paint.asphalt_level:patch_level", gives(np.float32(0.0)), "pale repairs, parking places"),
         ("letters are no patch", "paint.asphalt_level:_letters", gives(False), "bus lane with bold letters"),

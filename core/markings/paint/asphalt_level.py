@@ -16,7 +16,7 @@ from ...intensity.asphalt_model import asphalt_statistics
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
 from ..weights import ASPHALT, RIMS
-from .not_paint import RimBands, gutter_cells
+from .not_paint import RimBands, gutter_level
 
 
 def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims: Sequence[RimBands]) -> tuple[np.ndarray, np.ndarray]:
@@ -26,7 +26,10 @@ def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims
     `rims` : of the rim of the scanned road and of the road's edges.
     """
     z = (brightness - median) / spread
-    gutter = np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
+    level = np.maximum.reduce([gutter_level(z, rim) for rim in rims])
+    gutter = level > 0
+    # concrete scatters by as much of its brightness as asphalt
+    z = z - level * (1.0 + ASPHALT.patch_tail * spread / np.maximum(median, spread))
     with np.errstate(invalid="ignore"):
         even = (z < ASPHALT.background_limit) & (z > -2 * ASPHALT.background_limit) & ~gutter
     z = z - background(z, even)

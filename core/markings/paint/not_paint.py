@@ -124,8 +124,8 @@ def _met_since(ends, breaks):
     return last_met.astype(bool)
 
 
-# Concrete gutters begin at the very rim of the road and are two decimetres wide or more over metres of rim. An edge line stands off the rim, is
-# narrower, or is the brighter of the two; a stop line or zebra stripe at the rim takes up little of its length.
+# Concrete gutters begin at the very rim of the road, are broader or paler than a line, and run along metres of rim. They are a ground of their own:
+# what is painted on one or beside it is brighter still. A stop line or zebra stripe at the rim takes up little of its length.
 
 ROAD_GAP_ACROSS = int(TRACKS.max_track_gap / CELL_SIZE)   # derived: and across it those between tracks of the scan
 
@@ -203,27 +203,34 @@ def _around(counts):
     return np.ascontiguousarray(np.moveaxis(sums, 2, 0))
 
 
-def gutter_cells(z: np.ndarray, rim: RimBands) -> np.ndarray:
-    """(rows, columns) bool, cells of concrete gutters, by our own rule; `z` : (rows, columns) spreads above asphalt, NaN where not scanned."""
-    result = np.zeros(z.shape, bool)
-    value, scanned = z.take(rim.near), rim.seen
-    share = rim.sums(value > RIMS.gutter_brightness) / np.maximum(scanned, 1e-9)
-    # a cell at the rim is half curb: the first band is not tested on its own
-    full = (share >= RIMS.min_bright_share) & (scanned > RIMS.min_cells_seen)
-    full[0] |= full[1]
-    if not full[:RIMS.min_gutter_bands].all(axis=0).any():
+def gutter_level(z: np.ndarray, rim: RimBands) -> np.ndarray:
+    """(rows, columns) float32 spreads by which concrete gutters lie above asphalt, 0 elsewhere, by our own rule.
+
+    How broad a strip along the rim is, and how pale beside the paint of the window, weighs in nats for a gutter and against a line.
+    `z` : (rows, columns) spreads above asphalt, NaN where not scanned
+    """
+    result = np.zeros(z.shape, np.float32)
+    value, scanned = z.take(rim.near), np.maximum(rim.seen, 1e-9)
+    share = rim.sums(value > RIMS.gutter_brightness) / scanned
+    # a cell at the rim is half curb: the second band tells, and the first may be half as bright
+    share[0] = share[1]
+    bright = np.cumprod((share >= RIMS.min_bright_share) & (scanned > RIMS.min_cells_seen), axis=0)
+    if not bright.any():
         return result
     # in whole 64ths: their sums are exact in any order
-    height = np.rint(64 * np.clip(value, 0.0, 100.0))
-    level = rim.sums(height / 64) / np.maximum(scanned, 1e-9)
-    inner = np.minimum.accumulate(level[1:], axis=0)
-    painted = np.zeros(full.shape, bool)
-    painted[2:] = level[2:] > RIMS.paint_to_gutter * inner[:-1]
-    width = np.cumprod(full & ~painted, axis=0).sum(axis=0)
-    # the band in which the gutter ends is half gutter, unless it is paint
-    ends = np.take_along_axis(painted, np.minimum(width, RIMS.gutter_bands - 1)[None], axis=0)[0]
-    width = np.where(width >= RIMS.min_gutter_bands, width + ~ends, 0)
-    result.ravel()[rim.near] = rim.band < width.ravel().take(rim.square)
+    level = rim.sums(np.rint(64 * np.clip(value, 0.0, 100.0)) / 64) / scanned
+    level[0] = np.minimum(2 * level[0], level[1])
+    unbroken = np.minimum.accumulate(level, axis=0)
+    with np.errstate(invalid="ignore"):
+        paint = z[(z > ASPHALT.highest) & (rim.distance >= np.float32(RIMS.gutter_bands * RIMS.band_cells * CELL_SIZE))]
+    paler = 1.0 - unbroken[1] / median(paint) if len(paint) >= ASPHALT.min_bin_cells else 0.0
+    width = bright.sum(axis=0) * (RIMS.band_cells * CELL_SIZE)
+    odds = RIMS.per_gutter_width * (width - RIMS.line_at_rim) + RIMS.per_paleness * np.maximum(paler, 0.0) - RIMS.gutter
+    unbroken *= bright[0] & (odds > 0.0) & (unbroken > RIMS.gutter_brightness)
+    # the band in which the gutter ends is half gutter, and nothing is paint in the one that is half curb
+    unbroken[1:] = np.maximum(unbroken[1:], unbroken[:-1])
+    unbroken[0] = np.where(unbroken[0] > 0.0, 100.0, 0.0)
+    result.ravel()[rim.near] = unbroken.reshape(RIMS.gutter_bands, -1)[rim.band, rim.square]
     return result
 
 

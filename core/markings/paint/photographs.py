@@ -16,7 +16,7 @@ from ...curves.robust import median
 from ...lazy import cv2
 from ..weights import ASPHALT, PHOTOGRAPHS, RIMS
 from .asphalt_level import of_squares, otsu
-from .not_paint import RimBands, beside_pieces, gutter_cells
+from .not_paint import RimBands, beside_pieces, gutter_level
 
 
 def bright_spots(brightness: np.ndarray,
@@ -34,7 +34,7 @@ def bright_spots(brightness: np.ndarray,
     # half of the brightest three cells square nearby is where paint ends; worn paint is darker than what is left of it nearby
     brightest = cv2.dilate(cv2.blur(np.nan_to_num(z), (3, 3)), np.ones((PHOTOGRAPHS.half_maximum_cells,) * 2, np.uint8))
     threshold = np.clip(brightest / 2, ASPHALT.lowest, ASPHALT.highest)
-    bright = (z > threshold) & ~np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
+    bright = z - np.maximum.reduce([gutter_level(z, rim) for rim in rims]) > threshold
     light = _light(np.log(np.maximum(brightness, np.float32(1))), np.log(np.maximum(ground, np.float32(1))), bright)
     return z, bright, partial(_are_paint, z, brightness / spread, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
 

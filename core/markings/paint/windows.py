@@ -141,7 +141,7 @@ class _Window:
         scale, threshold = threshold_profile(z[rows], (seen & ~gutter)[rows], offsets, bins, settings.separation)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        bright = (z > threshold * scale) & ~gutter
+        bright = z > threshold * scale
         return z / scale, bright, partial(two_sided, (brightness - asphalt) / (spread * scale), bright, ASPHALT.lowest), least
 
     def _heights(self, part: PieceOfRoad, grid: RoadGrid) -> tuple[np.ndarray, np.ndarray]:

@@ -186,7 +186,7 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     searches : {number of a road: _PlanSearch}
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
-    Returns PlanSteps, (N,) bool where the raised ground behind each ends, and (N,) m the scanner's noise; None where there are no steps
+    Returns PlanSteps, (N,) m behind each at which the raised ground ends, and (N,) m the scanner's noise; None where there are no steps
     """
     (road, *section), survey, width, clear = item, decimation.survey, decimation.width, settings.limits.clear_height
     limits, known, barrier, tips, behind = (getattr(searches[road], name) for name in ("limits", "known", "barrier", "tips", "behind"))
@@ -222,7 +222,8 @@ def plan_steps_of_section(decimation: PointDecimation, item: tuple[int, int, int
     hidden = far_sides(raster, steps, ground)
     hidden = hidden[wanted(hidden.x, hidden.y)]
     if settings.limits.automatic_height:
-        hidden = PlanSteps.join([hidden, island_ends(views[0], PlanSteps.join([steps, hidden]))])
+        ends_of_islands = island_ends(views[0], PlanSteps.join([steps, hidden]))
+        hidden = PlanSteps.join([hidden, ends_of_islands[np.isfinite(line.locate(ends_of_islands.x, ends_of_islands.y)[0])]])
     # its near side is the far side of a far side; an island ends where its top does, not where the ground comes out of its shadow
     falls = np.r_[np.where(np.isfinite(ground.edge), ground.edge, ground.falls), np.full(len(hidden), RETURN.min_island_width)]
     # averaging leaves the errors of single beams and the drift of positions

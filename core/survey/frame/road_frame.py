@@ -448,7 +448,7 @@ def _shared_with(road, line, track, moved, rows):
     along = np.isfinite(d) & (turned < FRAME.parallel_angle) & level
     if len(kept) < FRAME.min_shared_length:
         along[:] = 2 * along.sum() > len(along)
-    shortest = int(FRAME.min_shared_length / 2)
+    leaps, shortest = _leaps(s, x, y), int(FRAME.min_shared_length / 2)
     along = _fill_runs(along, shortest)
     if not along.all():
         along = ~_fill_runs(~along, shortest)
@@ -456,13 +456,13 @@ def _shared_with(road, line, track, moved, rows):
         if along[i] and np.median(np.nan_to_num(np.abs(d[i:j]), nan=np.inf)) > FRAME.same_carriageway:
             along[i:j] = False
         elif along[i]:
-            first, last = _without_leaps(s[i:j], shortest, i > 0, j < len(along))
+            first, last = _without_leaps(leaps[i:j - 1], shortest, i > 0, j < len(along))
             along[i:i + first] = along[i + last:j] = False
-    return _ranges_of(along, rows, kept, s)
+    return _ranges_of(along, rows, kept, leaps)
 
 
-def _ranges_of(along, rows, kept, s):
-    """The row ranges of the kept rows that run along a road, with their stations, and those of the others."""
+def _ranges_of(along, rows, kept, leaps):
+    """The row ranges of the kept rows that run along a road, and those of the others; `leaps` as of `_leaps`."""
     (a, b), shared, left = rows, [], []
     for i, j in _runs(along):
         ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
@@ -470,33 +470,34 @@ def _ranges_of(along, rows, kept, s):
             left.append(tuple(ends))
             continue
         # on a circuit, each round is a pass: split where the station jumps back
-        cuts = [int(kept[i + k]) for k in _jumps(s[i:j])]
+        cuts = [int(kept[i + k]) for k in _jumps(leaps[i:j - 1])]
         shared += list(zip([ends[0], *cuts], [*cuts, ends[1]]))
     return shared, left
 
 
-def _jumps(s):
-    """Indices at which the station leaps, at least half of `min_shared_length` from the ends and from each other."""
+def _jumps(leaps):
+    """Rows at which the station leaps, at least half of `min_shared_length` from the ends and from each other."""
     shortest, kept, last = int(FRAME.min_shared_length / 2), [], 0
-    for k in _leaps(s):
-        if k - last >= shortest and len(s) - k >= shortest:
-            kept.append(int(k))
+    for k in (np.flatnonzero(leaps) + 1).tolist():
+        if k - last >= shortest and len(leaps) + 1 - k >= shortest:
+            kept.append(k)
             last = k
     return kept
 
 
-def _without_leaps(s, shortest, joins, leaves):
+def _without_leaps(leaps, shortest, joins, leaves):
     """(first, end) of a run along a road, without a leap near its beginning, where the drive `joins` the road, or its end, where it `leaves` it.
 
     On a small roundabout the arms lie side by side, and before the leap the drive is still on another one.
     """
-    leaps = _leaps(s)
-    return (max(leaps[leaps < shortest], default=0) if joins else 0,
-            min(leaps[leaps > len(s) - shortest], default=len(s)) if leaves else len(s))
+    rows, count = np.flatnonzero(leaps) + 1, len(leaps) + 1
+    return (max(rows[rows < shortest], default=0) if joins else 0,
+            min(rows[rows > count - shortest], default=count) if leaves else count)
 
 
-def _leaps(s):
-    return np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+def _leaps(s, x, y):
+    """(N - 1,) bool, whether the station differs between (N,) successive positions by more than the way between them can, even in a bend."""
+    return np.abs(np.diff(s)) > np.maximum(FRAME.least_leap, np.hypot(np.diff(x), np.diff(y)) / FRAME.bend_stretch[0])
 
 
 def _runs(mask):
@@ -516,7 +517,7 @@ def _make_pass(road, time, x, y, z):
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
     s, _ = road.locate(x[kept], y[kept], corridor=2 * FRAME.same_carriageway)
     rows = np.arange(len(x))
-    run = _longest_run(s)
+    run = _longest_run(s, _leaps(s, x[kept], y[kept]))
     if run is None:
         hint = np.clip(road.nearest_station(x, y, np.inf), road.start, road.end)
         direction = 1 if hint[-1] >= hint[0] else -1
@@ -534,9 +535,9 @@ def _make_pass(road, time, x, y, z):
     return Pass(0, road.number, direction, time, x, y, z, s, d)
 
 
-def _longest_run(s):
+def _longest_run(s, leaps):
     """(first, end) of the longest run of known stations without jumps; None where none is known."""
     unknown = ~np.isfinite(s)
-    cuts = np.union1d(np.r_[0, np.flatnonzero(unknown[1:] | unknown[:-1]) + 1, len(s)], _leaps(s))
+    cuts = np.r_[0, np.flatnonzero(unknown[1:] | unknown[:-1] | leaps) + 1, len(s)]
     runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
     return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None

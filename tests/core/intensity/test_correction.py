@@ -110,6 +110,14 @@ def test_a_line_that_fills_its_distance_does_not_become_asphalt():
     assert abs(np.median(points.corrected[paint]) / np.median(points.corrected[beside]) - 2.5) < 0.25
 
 
+@pytest.mark.parametrize("gutter", [(7.5, 8.0), (7.4, 8.0), (-4.0, -3.5), (3.5, 4.0)])
+def test_a_gutter_that_fills_its_distance_from_the_vehicle_is_as_bright_after_the_correction_as_before(gutter):
+    points, _ = corrected(street(line=gutter, paint=1.9)[0])
+    concrete = (points.d > gutter[0]) & (points.d < gutter[1])
+    # beyond the last known distance asphalt falls on, by a tenth in half a metre
+    assert np.median(points.corrected[concrete]) / np.median(points.corrected[~concrete]) == pytest.approx(1.9, rel=0.12)
+
+
 def test_logarithmic_intensities_are_shifted_not_scaled():
     records, _, _ = street(logarithmic=True)
     points, report = corrected(records)

@@ -55,7 +55,8 @@ def test_a_layer_is_brought_to_another_zone():
 
 @pytest.mark.filterwarnings("error")
 def test_a_bin_that_stands_out_from_those_around_it_is_found_beside_bins_that_nobody_saw():
-    spread = np.full((1, 40), np.nan)
+    level, spread = np.full((2, 1, 40), np.nan)
+    level[0, 20:30], level[0, 29] = 4000.0, 9000.0
     spread[0, 20:30], spread[0, 25] = 0.1, 1.0
     with filters_untouched():
-        np.testing.assert_array_equal(np.flatnonzero(_mixed(spread)[0]), [25])
+        np.testing.assert_array_equal(np.flatnonzero(_mixed(level, spread)[0]), [25, 29])

@@ -256,6 +256,21 @@ def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_n
     assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 50 * 0.15 * DENSITY
 
 
+def test_a_line_painted_on_a_gutter_is_found_and_a_pale_gutter_as_narrow_as_a_line_is_not(tmp_path):
+    lines = [strip(5, 55, 3.65, 3.8), strip(5, 55, 0.0, 0.15)]
+    paint = found_on(street(FRAME, lines, level=lambda s, d: np.where(d > 3.5, 2.0, np.where(d < -3.84, 1.8, 1.0))), tmp_path)
+    on_line = [line(paint.s, paint.d) for line in lines]
+    assert np.any(on_line, axis=0).mean() > 0.97
+    assert all(np.count_nonzero(on) > 0.9 * 50 * 0.15 * DENSITY for on in on_line)
+
+
+@pytest.mark.parametrize("width", [0.12, 0.25])
+def test_an_edge_line_with_a_decimetre_of_asphalt_between_it_and_the_curb_is_no_gutter(tmp_path, width):
+    line = strip(5, 55, 3.9 - width, 3.9)
+    paint = found_on(street(FRAME, [line, strip(5, 55, 0.0, 0.15)]), tmp_path)
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 50 * width * DENSITY
+
+
 @pytest.mark.parametrize("factor", [1.4, 2.2])
 def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_paint(tmp_path, factor):
     lines = [strip(5, 55, d, d + 0.15) for d in (-3.5, 0.1, 3.35)]

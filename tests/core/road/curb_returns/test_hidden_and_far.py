@@ -5,6 +5,7 @@ import pytest
 import shapely
 import shapely.affinity
 from curbed_streets import EAST, NORTH
+from lanewright.core.road.curb_returns import detect
 from lanewright.core.road.curb_returns.extended_curbs import FollowedEnds, followed_steps, island_ends
 from lanewright.core.road.curb_returns.ground_raster import ground_raster, ground_slopes
 from lanewright.core.road.curb_returns.islands import far_sides, ground_behind
@@ -105,6 +106,16 @@ def test_an_island_that_is_dropped_for_a_crossing_ends_where_its_step_of_centime
     assert bool(len(end)) == ends
     np.testing.assert_allclose(end.x, 26.0, atol=0.03)
     np.testing.assert_allclose(end.height, dropped, atol=0.008)
+
+
+def test_an_end_of_an_island_where_the_road_has_no_station_ends_no_run(monkeypatch):
+    """As in the middle of a tight ring, or beyond the end of the drive."""
+    survey, across = survey_along(scan(sidewalks(7.0)), -1.0), np.arange(-1.8, 1.8, 0.3)
+    level = np.zeros(len(across))
+    beyond = PlanSteps(level + survey.frame.roads[0].start - 6.0, across, level + 1.0, level, level, level + 0.1, level, level + 0.003,
+                       level + 20, level + 20)
+    monkeypatch.setattr(detect, "island_ends", lambda ground, steps: beyond)
+    assert not (np.array([row["kind"] for row in detect_curbs(survey).rows]) == "island").any()
 
 
 def test_an_island_on_a_road_that_tilts_where_it_stands_is_one():

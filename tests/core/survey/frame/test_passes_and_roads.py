@@ -80,6 +80,15 @@ def test_a_street_driven_twice_is_one_road_with_two_passes(aside, way):
     np.testing.assert_allclose(frame.passes[1].d, aside, atol=0.01)
 
 
+@pytest.mark.parametrize("speed", [15, 25, 45])
+def test_a_motorway_driven_there_and_back_with_one_position_a_second_has_one_pass_each_way(speed):
+    """Its positions lie as far apart as stations leap between the arms of a roundabout."""
+    path = chain(ahead(700), bend(500, 40), ahead(700))
+    frame = build_frame(joined(drive(path, speed, rate=1.0), drive(path[::-1] + [0.0, 8.0], speed, rate=1.0, start=2000.0)))
+    assert [p.road for p in frame.passes] == [0, 0] and frame.passes[0].direction == -frame.passes[1].direction
+    assert all(np.ptp(p.s) > 1749 - 2 * speed for p in frame.passes)
+
+
 def test_where_a_pass_in_a_higher_lane_turns_off_the_height_of_the_road_makes_no_step():
     """On a crossfall the lanes lie 15 cm apart in height; a step of half of that across the road would be a curb."""
     beside = drive(STREET[:1500] + [0.0, 5.0], start=2000.0, height=2.15)
