@@ -161,7 +161,7 @@ class LineEnds:
         about_nose = (bend > 0) & (gap <= nose)
         max_turn = RETURN.max_join_turn + np.where(about_nose, gap / RETURN.nose_radius, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
-        # a square end: one of both leads on to the corner, near which the other begins
+        # a square end: one of both goes on to the corner, near which the other begins
         legs = [(dx * end[:, 4] - dy * end[:, 3]) / np.where(bend > 0, bend, np.inf) for end in (head, tail)]
         in_line = (across <= RETURN.join_tolerance + RETURN.join_drift * np.abs(along)) | about_nose & (np.abs(np.minimum(*legs)) <= overlap)
         up = np.abs(head[:, 2] - tail[:, 2])
