@@ -197,12 +197,10 @@ def check_measured_once(time: np.ndarray, place: np.ndarray) -> None:
         pairs = np.flatnonzero(ordered[later:] == ordered[:-later])
         if len(pairs) < LAS.least_doubled * len(time):
             return
-        first, second = order[pairs], order[pairs + later]
-        apart = [axis.take(second) - axis.take(first) for axis in place.T]
-        way = np.where(max(apart, key=lambda along: np.abs(along).sum()) < 0.0, -1.0, 1.0)   # whichever of the two comes first
-        apart = [along * way for along in apart]
-        east, north, up = usual = [float(np.median(along)) for along in apart]
-        alike = np.count_nonzero(np.all([np.abs(along - middle) < LAS.coarse_coordinates for along, middle in zip(apart, usual)], axis=0))
+        apart = place[order[pairs + later]] - place[order[pairs]]
+        apart *= np.where(apart[:, [int(np.abs(apart).sum(axis=0).argmax())]] < 0.0, -1.0, 1.0)   # whichever of the two comes first
+        east, north, up = usual = np.median(apart, axis=0)
+        alike = (np.abs(apart - usual) < LAS.coarse_coordinates).all(axis=1).sum()
         if alike > max(LAS.most_of_pairs * len(pairs), LAS.least_doubled * len(time)) and np.linalg.norm(usual) > LAS.coarse_coordinates:
             raise RoadExtractionError(f"About {200 * alike / len(time):.0f} % of the points were given twice, {east:+.2f} m east, {north:+.2f} m "
                                       f"north and {up:+.2f} m up of each other, as of one drive in two datums. Give one of its exports.")
