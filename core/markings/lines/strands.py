@@ -338,7 +338,8 @@ class EdgesBeside:
         """(N,) the nearest edge that leads along both of two places, (N, 2) m each; -1 without one."""
         order, result, nearest = np.argsort(s.min(axis=1)), np.full(len(s), -1), np.full(len(s), np.inf)
         low, high = s.min(axis=1)[order], s.max(axis=1)[order]
-        for k, (edge, first, last) in enumerate(zip(self.edges, *self._spans)):
+        for k in np.flatnonzero((self._spans[0] <= low.max(initial=-np.inf)) & (self._spans[1] >= high.min(initial=np.inf))).tolist():
+            edge, first, last = self.edges[k], *(ends[k] for ends in self._spans)
             inside = np.arange(*np.searchsorted(low, [first, np.nextafter(last, np.inf)]))
             rows = order[inside[high[inside] <= last]]
             farthest = np.abs(np.interp(s[rows], *edge) - d[rows]).max(axis=1)
@@ -348,12 +349,10 @@ class EdgesBeside:
 
     def between(self, before: tuple[float, float], after: tuple[float, float]) -> Callable[[np.ndarray], np.ndarray] | None:
         """The nearest edge that leads along both of two places, (station, offset) in m: a function of stations (N,), its offset; None without one."""
-        stations, offsets = zip(before, after)
-        along = [self.edges[k] for k in np.flatnonzero((self._spans[0] <= min(stations)) & (self._spans[1] >= max(stations)))]
-        farthest = [np.abs(np.interp(stations, *edge) - offsets).max() for edge in along]
-        if not along or min(farthest) > LINE_TO_EDGE:
+        number, = self.along(*(np.array([pair]) for pair in zip(before, after)))
+        if number < 0:
             return None
-        s, d = along[int(np.argmin(farthest))]
+        s, d = self.edges[number]
         return partial(np.interp, xp=s, fp=d)
 
 
