@@ -134,6 +134,16 @@ def test_where_two_drives_disagree_in_height_the_road_goes_on_to_its_edge(off):
     assert min(covered(edges, survey, side, half=lambda s: np.full_like(s, 6.0)) for side in (1, -1)) >= 0.95
 
 
+@pytest.mark.parametrize("strip, density", [((1.9, 2.9), 60), ((2.3, 3.0), 100)])
+def test_behind_a_strip_with_few_points_that_looks_smooth_the_road_goes_on_to_its_edge(strip, density):
+    rng, count = np.random.default_rng(3), int(density * 2 * (LENGTH + 8) * (strip[1] - strip[0]))
+    few = (rng.uniform(-4, LENGTH + 4, count), rng.uniform(*strip, count) * rng.choice([-1, 1], count), rng.normal(0.0, 0.001, count),
+           1000.0 * rng.lognormal(0.0, 0.1, count))
+    survey = street(density=400, keep=lambda s, d: (np.abs(d) < strip[0]) | (np.abs(d) > strip[1]), extra=few, gravel=0.5)
+    edges = found(survey)
+    assert min(covered(edges, survey, side, within=0.1) for side in (1, -1)) >= 0.95
+
+
 def test_where_one_scanner_stops_to_see_the_road_it_does_not_end():
     rng = np.random.default_rng(4)
     survey = street(gain=lambda d: np.where(np.abs(d) < 2.0 + 0.2 * rng.uniform(size=len(d)), 2.0, np.nan_to_num(1.0)), gravel=0.8)
