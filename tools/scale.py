@@ -20,12 +20,14 @@ from plugin_package import load
 
 load()
 
+from lanewright.core.execution.folder_executor import items_together  # noqa: E402
 from lanewright.core.execution.phase import Executor, name_of, read_plain, write_plain  # noqa: E402
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map  # noqa: E402
 from lanewright.core.survey import open_survey  # noqa: E402
 from lanewright.core.survey.trajectory.reader import read_trajectory  # noqa: E402
 
 WORKERS = (1, 2, 4, 8, 15, 16, 32, 64, 256)
+SHARED_BY = 15   # workers for which items are put together into files
 
 
 class Recorder(Executor):
@@ -41,15 +43,23 @@ class Recorder(Executor):
                      sent=self._size((recipe, tuple(phase.arguments))), results=[])
         self.phases.append(noted)
         source = recipe.open(self.open)
-        for number in range(len(items)):
-            write_plain(path, items[number])
-            noted["caller"] += time.process_time() - self.began if number else 0.0
-            began = time.process_time()
-            write_plain(path, phase.function(source, read_plain(path), *phase.arguments))
-            self.began = time.process_time()
-            noted["seconds"].append(self.began - began)
-            noted["results"].append(path.stat().st_size)
-            yield read_plain(path)
+        together = items_together(phase, len(items), SHARED_BY)
+        for first in range(0, len(items), together):
+            # a worker is given a file of some items, and writes a file for each of their results
+            write_plain(path, [items[number] for number in range(first, min(first + together, len(items)))])
+            noted["caller"] += time.process_time() - self.began if first else 0.0
+            self.began, results = time.process_time(), []
+            task = read_plain(path)
+            path.unlink()   # to write over a file takes longer than to write one
+            for item in task:
+                results.append(self.folder / f"result{len(results)}.plain")
+                write_plain(results[-1], phase.function(source, item, *phase.arguments))
+                began, self.began = self.began, time.process_time()
+                noted["seconds"].append(self.began - began)
+                noted["results"].append(results[-1].stat().st_size)
+            for result in results:
+                yield read_plain(result)
+                result.unlink()
 
     def _size(self, value):
         """Bytes of a value in a file."""

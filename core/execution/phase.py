@@ -177,7 +177,7 @@ def named(name: str) -> Any:
 # A file: FORMAT, the CRC-32 of all that follows, the length of a JSON text, that text (how the arrays belong together; kind, shape and order
 # of each), the bytes of the arrays. An .npz, whose arrays have headers and checksums of their own, takes nine times as long to write
 # and read
-FORMAT = b"LWplain3"
+FORMAT = b"LWplain4"
 CHECKSUM, TEXT_LENGTH = struct.Struct("<I"), struct.Struct("<q")
 CHECKED_AT_ONCE = 1 << 20   # cost: bytes, which fit the processor's cache
 
@@ -314,6 +314,9 @@ def _tree(value, arrays):
         return _tree_of_array(value, arrays)
     if kind is dict:
         return {"dict": [[_tree(key, arrays), _tree(item, arrays)] for key, item in value.items()]}
+    if is_dataclass(value) and "__getstate__" not in kind.__dict__:
+        attributes = (getattr(value, name) for name in _field_names(kind))
+        return {"fields": name_of(kind), "values": [item if type(item) in PLAIN else _tree(item, arrays) for item in attributes]}
     return {"object": name_of(kind), "state": {name: item if type(item) in PLAIN else _tree(item, arrays) for name, item in _state(value).items()}}
 
 
@@ -330,10 +333,7 @@ def _tree_of_array(value, arrays):
 
 def _state(value):
     """The attributes of an object by name."""
-    getstate = type(value).__dict__.get("__getstate__")
-    if getstate is not None:
-        return getstate(value)
-    return {name: getattr(value, name) for name in _field_names(type(value))} if is_dataclass(value) else vars(value)
+    return type(value).__dict__.get("__getstate__", vars)(value)
 
 
 @cache
@@ -348,8 +348,12 @@ def _value(tree, arrays):
     if kind in ("list", "tuple"):
         items = [_value(item, arrays) if type(item) is dict else item for item in content]
         return items if kind == "list" else tuple(items)
+    if kind == "fields":
+        value = object.__new__(named(content))
+        vars(value).update(zip(_field_names(type(value)), [_value(item, arrays) if type(item) is dict else item for item in tree["values"]]))
+        return value
     if kind == "object":
-        return _object(named(content), {name: _value(item, arrays) for name, item in tree["state"].items()})
+        return _object(named(content), {name: _value(item, arrays) if type(item) is dict else item for name, item in tree["state"].items()})
     if kind == "number":
         return np.dtype(content[0]).type(content[1])
     if kind == "texts":

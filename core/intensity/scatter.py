@@ -48,7 +48,8 @@ class ScannerScatter:
 
     @property
     def photographed(self) -> list[int]:
-        return [scanner for scanner, ratio in sorted(self.differences.items()) if ratio < ASPHALT.photographed]
+        return [scanner for scanner, ratio in sorted(self.differences.items())
+                if ratio < np.interp(self.shares.get(scanner, np.inf), *ASPHALT.photographed)]
 
     def noisy_windows(self, road: int) -> set[int]:
         """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""

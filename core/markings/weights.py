@@ -414,11 +414,12 @@ class NOISY:
 class PHOTOGRAPHS:
     """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
 
-    The nats are rounded from a logistic regression over pieces of four simulated streets in the brightness of photographs with shadows of trees,
-    houses and cars, seams and crossfall of light; every other 20 m of these, and other streets, were kept aside.
+    The nats lie between logistic regressions over pieces of four and of two simulated streets in the brightness of photographs with shadows of trees,
+    houses and cars, seams, crossfall of light, displaced images and the colour of cars beside them; other streets and other light were kept aside.
     """
 
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
+    joint_cells: int = 5   # 20 cm, the diameter of the disc that joints and bands of tar have no room for
     level_cells: int = 23   # 0.92 m, the diameter of the disc that bright ground has room for and paint has not
     half_maximum_cells: int = 7   # 28 cm in which the brightest cell is looked for
     # two pairs of quantiles of a normal distribution, each with its standard deviations below the median: the first stays asphalt where paint covers
@@ -428,14 +429,15 @@ class PHOTOGRAPHS:
     least_scatter: float = 0.01   # of the brightness of asphalt, where values are coarse
     beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
     most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
+    most_elongated: float = 3.0   # of the logarithm of length over breadth that counts: curbs along the rim are as long as lines
     sun_squares: float = 8.0   # squares of 20 cm: standard deviation of the mean that tells how bright asphalt in the sun is nearby
     two_levels: float = 0.72   # of the variance, between shade and sun: of one level that scatters it is two thirds
     paint_step: float = 0.5   # of logarithms of brightness from asphalt to paint, to which that of the survey is drawn
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
     # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
-    # breadth; of nearness of the rim; of nearness to paint and not to asphalt in the sun. Without any of them a piece may be either
-    nats: tuple[float, ...] = -6.0, -2.0, 1.1, -6.2, 3.1
+    # breadth; of nearness of the rim; of nearness to paint and not to asphalt. Without any of them a piece may be either
+    nats: tuple[float, ...] = -3.0, -2.5, 0.9, -7.0, 4.4
 
 
 @table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -100,13 +100,14 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
             searches = {"scanlines": planes_of(source, settings.scanlines, settings.curbs.block_length), **searches}
         steps = with_scanner_noise(steps_of_roads(_steps_of_methods, source, (settings.scanlines, settings.curbs), searches,
                                                   progress.part(BOUNDARY.lattice_progress, BOUNDARY.returns_progress)))
-        points = curbs_along(source, steps, partial(RoadLook, ground))
+        look_at = cache(partial(RoadLook, ground))
+        points = curbs_along(source, steps, look_at)
         for method, tell in (("scanlines", tell_corners), ("profiles", tell_points)):
             if method in points:
                 tell(points[method], progress)
         beside = grids_beside(steps["profiles" if "profiles" in steps else "scanlines"])
         points[settings.method] = with_curb_returns(points[settings.method], decimation, settings.curbs,
-                                                    progress.part(BOUNDARY.returns_progress, 1.0), beside, ground)
+                                                    progress.part(BOUNDARY.returns_progress, 1.0), beside, look_at)
         return points
 
 

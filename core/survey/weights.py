@@ -18,7 +18,6 @@ class FRAME:
     min_loop_length: float = 60.0   # m driven before coming near the own track again counts as a return
     min_pass_length: float = 10.0   # m: shorter pieces do not become a pass
     standstill_radius: float = 0.5   # m: position noise of a standing vehicle
-    turn_angle: float = np.radians(75.0)   # from the heading at the apex: where a turn on the spot begins and ends
     turn_reach: float = 40.0   # m either side of the apex of a turn on the spot
     time_tick: float = 0.005   # s between the entries of the lookup tables by time
     max_ticks: int = 20_000_000   # entries of a lookup table at most

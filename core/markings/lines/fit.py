@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ...common.arrays import stretch_of
+from ...common.arrays import members_of, stretch_of
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
@@ -21,6 +21,7 @@ from ...curves.bspline import Profile, fit_splines, smooth_profiles
 from ...curves.model_selection import CURVES, fit_curve, fit_curves
 from ...curves.robust import median
 from ...execution.phase import THREADS, Items, NoSource, Phase
+from ...road.common.pseudo_scanlines import expand_ranges
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import LINE_VERTEX_SPACING
 from ...survey.frame.road_frame import RoadFrame
@@ -276,22 +277,26 @@ def _kinds_of_lines(estimates):
     Lines that bound no lane are in neither, and in the second are those alone that are almost as probable to separate something else along most
     of them.
     """
-    parts: dict[int, list[tuple[float, int, np.ndarray]]] = {}
+    parts: list[tuple[np.ndarray, ...]] = []   # of each road: lines, at how many stations each separates something, what, and behind by how much
     for road in estimates.roads.values():
         c, estimate = road.estimate.candidates, road.estimate
         kinds = separated_kinds(estimate.sections)
         uses = kinds[np.arange(len(kinds)), estimate.choice]
         nats = np.stack([np.where(kinds == use, estimate.second[:, :, None], np.inf).min(axis=1) for use in KINDS])
-        for i, m in zip(*np.nonzero(np.isin(uses, list(KINDS)) & c.painted)):
-            current = list(KINDS).index(uses[i, m])
-            gaps = np.where(np.arange(len(KINDS)) == current, np.inf, nats[:, i, m] - nats[current, i, m])
-            for row in set(c.rows[i, m].tolist()) - {-1}:
-                numbers = road.lines.number[row, c.first[i]:c.last[i] + 1]
-                for number, count in zip(*np.unique(numbers[numbers >= 0], return_counts=True)):
-                    parts.setdefault(int(number), []).append((float(count), int(uses[i, m]), gaps))
+        i, m = np.nonzero(np.isin(uses, list(KINDS)) & c.painted)
+        use, rows = uses[i, m], c.rows[i, m]
+        is_use = use == np.array(list(KINDS))[:, None]
+        gaps = np.where(is_use, np.inf, nats[:, i, m] - nats[is_use.argmax(axis=0), i, m])
+        of, side = np.nonzero((rows >= 0) & (np.diff(rows, prepend=-1) != 0))
+        part, station = expand_ranges(c.first[i[of]], c.last[i[of]] + 1)
+        number = road.lines.number[rows[of, side][part], station]
+        key, count = np.unique((number * len(of) + part)[number >= 0], return_counts=True)
+        number, part = np.divmod(key, max(len(of), 1))
+        parts.append((number, count.astype(float), use[of[part]], gaps.T[of[part]]))
     first, second, doubt = {}, {}, EstimateWeights().doubt
-    for number, of_line in parts.items():
-        count, use, gaps = (np.array(values) for values in zip(*of_line))
+    lines, *columns = map(np.concatenate, zip(*parts)) if parts else (np.empty(0, int),)
+    for number, members in members_of(lines):
+        count, use, gaps = (column[members] for column in columns)
         first[number] = KINDS[int(np.bincount(use, count).argmax())]
         share = (count[:, None] * (gaps < doubt)).sum(axis=0) / count.sum()
         likely = int(np.argmax(share))

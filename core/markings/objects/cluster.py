@@ -40,7 +40,7 @@ from .repeating import (
     stripes_apart,
     stripes_of_crossing,
 )
-from .shape import Shape, drawn_outline, lifted, measure, smallest_rectangle
+from .shape import Shape, drawn_outline, measure, smallest_rectangle
 from .split_merge import are_compound, join_fragments, parts_of_compound
 
 STRIP_KINDS = LINE_KINDS + ("stop",)  # drawn as even strips, the others cell by cell
@@ -191,26 +191,16 @@ def _stripe_markings(stripes, striped, shapes):
     for (k, rows), shape in zip(striped, shapes):
         corners = stripes[k].corners
         length, width = (float(np.hypot(*(corners[j] - corners[j - 1]))) for j in (1, 2))
-        markings.append(_Marking(rows, replace(shape, length=length, width=width), "zebra", shapely.Polygon(corners)))
+        markings.append(_Marking(rows, replace(shape, length=length, width=width), "zebra", corners))
     return markings
 
 
 def _blocks_of_all(pieces_by_road):
     """Of each road (N,) bool, which clusters are blocks of give-way lines: a row of them may lie on several roads, and oblique to them."""
     shapes = [shape for pieces in pieces_by_road for shape in pieces.shapes]
-    rectangles = [_rectangle(records, bounds) if max(shape.sides) <= SHAPES.small_marking_size else (0.0, 0.0, 0.0, 0.0)
-                  for pieces in pieces_by_road for records in [pieces.records.unread()] for bounds, shape in zip(pieces.bounds, pieces.shapes)]
-    sides, middles = np.split(np.array(rectangles).reshape(-1, 4), 2, axis=1)
+    sides, middles = np.split(np.array([shape.rectangle for shape in shapes]).reshape(-1, 4), 2, axis=1)
     blocks = give_way_blocks(filled(shapes), sides, middles)
     return np.split(blocks, np.cumsum([len(pieces.shapes) for pieces in pieces_by_road])[:-1]) if pieces_by_road else []
-
-
-def _rectangle(records, bounds):
-    """Sides of the smallest rectangle about a cluster in local coordinates, and the middle of its extent there, m."""
-    x, y = (records[name][slice(*bounds)] for name in "xy")
-    cells, _ = occupied(x // CELL_UNITS, y // CELL_UNITS)
-    middle = [(int(values.min()) + int(values.max())) / 2 * COORDINATE_SCALE for values in (x, y)]
-    return *smallest_rectangle(cells), *middle
 
 
 def _with_rows_divided(records, labels):
@@ -262,24 +252,18 @@ def _markings(stripes: list[_Marking], pieces: _Pieces, blocks: np.ndarray, numb
             shape = shapes[members[0]] if len(members) == 1 else measure(*(records[name][of_it] for name in ("s", "d", "spacing")))
             markings.append(_Marking(pieces.order[of_it], shape, kind))
     markings = sorted(markings, key=lambda marking: (marking.shape.s0, marking.shape.d0, marking.shape.s1))
-    striped, undrawn = ([marking for marking in markings if (marking.outline is None) == wanted] for wanted in (False, True))
-    outlines = iter((yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)),
-                                 [marking.rows for marking in undrawn], 1.0,
-                                 [(marking.shape, marking.kind in STRIP_KINDS) for marking in undrawn], (list(roads),), _polygons)))
-    rows = np.concatenate([np.empty(0, np.intp), *(marking.rows for marking in striped)])
-    places = np.stack(_columns_at(pieces.paint, "xyz", rows), axis=1) * COORDINATE_SCALE
-    of_stripes = iter(np.split(places, np.cumsum([len(marking.rows) for marking in striped])))
-    drawn = [next(outlines) if marking.outline is None else [lifted(marking.outline, next(of_stripes))] for marking in markings]
+    drawn = yield asked(outlines_of_markings, lambda rows: (number, *_columns_at(pieces.paint, DRAWN, rows)), [marking.rows for marking in markings],
+                        1.0, [marking.shape if marking.kind in STRIP_KINDS else marking.corners for marking in markings], (list(roads),), _polygons)
     return markings, drawn, sum(kind == NOT_PAINT for members, kind in classes if members)
 
 
 class _Marking(NamedTuple):
-    """Rows of a marking in the paint of its road; of a stripe of a crossing its outline in local coordinates is known already."""
+    """Rows of a marking in the paint of its road; of a stripe of a crossing its (4, 2) corners in local coordinates are known already."""
 
     rows: np.ndarray
     shape: Shape
     kind: str
-    outline: shapely.Polygon | None = None
+    corners: np.ndarray | None = None
 
 
 def _put(store, road, cluster, points):
@@ -335,7 +319,7 @@ def _scanning_distances(paint, markings, line, frame):
 
 # The phases: what is computed of some clusters or windows apart from all others; their items hold the columns that they need.
 
-MEASURED = "s", "d", "spacing"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
+MEASURED = "s", "d", "spacing", "x", "y"   # columns of points, in 0.1 mm and mm, by which a cluster is measured
 DRAWN = "s", "d", "x", "y", "z", "spacing"   # by which a marking is drawn
 TASK_POINTS = 5_000   # derived: of paint in an item on average, of which a worker process is given four together: a tenth of a second of its time
 
@@ -361,25 +345,34 @@ def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np
     point, from 0 on, None of a single one, and the Shape of each part.
     """
     *columns, compound = item
-    return [_pieces_of_cluster(s, d, spacing, divisible) for (s, d, spacing), divisible in zip(_clusters(columns), compound)]
+    return [_pieces_of_cluster(cluster, divisible) for cluster, divisible in zip(_clusters(columns), compound)]
 
 
-def _pieces_of_cluster(s, d, spacing, divisible):
+def _pieces_of_cluster(columns, divisible):
     """What `pieces_of_clusters` gives of one."""
-    parts = parts_of_compound(s, d, spacing) if divisible else None
+    parts = parts_of_compound(*columns[:3]) if divisible else None
     if parts is None or not parts.any():
-        return None, [measure(s, d, spacing)]
-    return parts, [measure(s[rows], d[rows], spacing[rows]) for _, rows in members_of(parts)]
+        return None, [_measured(*columns)]
+    return parts, [_measured(*_at(columns, rows)) for _, rows in members_of(parts)]
+
+
+def _measured(s, d, spacing, x, y):
+    """The Shape of a cluster; if it is small, with its `rectangle`."""
+    shape = measure(s, d, spacing)
+    if max(shape.sides) > SHAPES.small_marking_size:
+        return shape
+    middle = [(int(values.min()) + int(values.max())) / 2 * COORDINATE_SCALE for values in (x, y)]
+    return replace(shape, rectangle=(*smallest_rectangle(occupied(x // CELL_UNITS, y // CELL_UNITS)[0]), *middle))
 
 
 def outlines_of_markings(source: NoSource, item: tuple[Any, ...], roads: Sequence[Road]) -> tuple[np.ndarray, ...]:
     """The phase that draws markings.
 
-    `item` : the number of the road, columns DRAWN of the points, the bounds of the markings, and the Shape and whether it is a strip of each. Returns
+    `item` : the number of the road, columns DRAWN of the points, the bounds of the markings, and the look of each as of `drawn_outline`. Returns
     (V, 3) local m, first vertex of each ring, first ring of each polygon, each with the end, and the number of polygons of each marking.
     """
     number, *columns, looks = item
-    drawn = [drawn_outline(cluster, shape, strip, roads[number]) for cluster, (shape, strip) in zip(_clusters(columns), looks)]
+    drawn = [drawn_outline(cluster, look, roads[number]) for cluster, look in zip(_clusters(columns), looks)]
     polygons = [polygon for outline in drawn for polygon in outline]
     _, vertices, starts = shapely.to_ragged_array(polygons, include_z=True) if polygons else (None, np.empty((0, 3)), (np.zeros(1, int),) * 2)
     return vertices, *starts, np.array([len(outline) for outline in drawn])

@@ -41,6 +41,8 @@ class Shape:
     oblique: tuple[float, float] = (0.0, 0.0)   # how fast these cross it at s0 and at s1, metres across per metre along, 0 where it is not known
     legs: int = 0   # of a zigzag line, 0 of anything else
     sides: tuple[float, float] = (0.0, 0.0)   # of the smallest rectangle about what is small, however it lies, else length and width
+    # in local coordinates the sides of the smallest rectangle about what is small, and the middle of its extent; 0 where they are not known
+    rectangle: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
     @property
     def elongation(self) -> float:
@@ -303,14 +305,17 @@ def _cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
     return shape.simplify(SHAPES.outline_tolerance, preserve_topology=True)
 
 
-def drawn_outline(columns: Sequence[np.ndarray], shape: Shape, strip: bool, road: Road) -> list[shapely.Polygon]:
-    """The polygons of one marking in local coordinates, from the road's start on, as an even strip or cell by cell.
+def drawn_outline(columns: Sequence[np.ndarray], look: Shape | np.ndarray | None, road: Road) -> list[shapely.Polygon]:
+    """The polygons of one marking in local coordinates, from the road's start on.
 
-    `columns` : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points.
+    `columns` : s, d, x, y, z, units of 0.1 mm, and spacing, mm between the tracks of the scan: (N,) int each of its points; `look` : the Shape of
+    what is drawn as an even strip, (K, 2) m the corners of what has some, None for what is drawn cell by cell.
     """
     s, d, x, y, z, spacing = columns
-    drawn = band(s, d, shape) if strip else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
     points = np.stack([x, y, z], axis=1) * COORDINATE_SCALE
+    if isinstance(look, np.ndarray):
+        return [lifted(shapely.Polygon(look), points)]
+    drawn = band(s, d, look) if look is not None else _cell_outline(*painted_cells(s * COORDINATE_SCALE, d * COORDINATE_SCALE, spacing))
     large = [part for part in getattr(drawn, "geoms", [drawn]) if part.area >= SHAPES.min_part_area]
     return [_to_local(part, road, points) for part in sorted(large, key=lambda part: part.bounds)]
 

@@ -26,9 +26,10 @@ def bright_spots(brightness: np.ndarray,
 
     All (rows, columns). `brightness` : (rows, columns) float32, NaN where nothing is known; `rims` : of the scanned road and of its edges.
     """
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (PHOTOGRAPHS.level_cells, PHOTOGRAPHS.level_cells))
-    # takes off what is narrower than any painted area; the edges of shadows and patches stay where they are
-    ground = cv2.morphologyEx(cv2.medianBlur(_filled(brightness), PHOTOGRAPHS.median_cells), cv2.MORPH_OPEN, disc)
+    ground = cv2.medianBlur(_filled(brightness), PHOTOGRAPHS.median_cells)
+    # fills joints and tar, then takes off what is narrower than any painted area; the edges of shadows and patches stay where they are
+    for operation, cells in ((cv2.MORPH_CLOSE, PHOTOGRAPHS.joint_cells), (cv2.MORPH_OPEN, PHOTOGRAPHS.level_cells)):
+        ground = cv2.morphologyEx(ground, operation, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (cells, cells)))
     ground, spread = _asphalt(brightness, ground)
     z = (brightness - ground) / spread
     # half of the brightest three cells square nearby is where paint ends; worn paint is darker than what is left of it nearby
@@ -40,7 +41,7 @@ def bright_spots(brightness: np.ndarray,
 
 
 def _light(brightness, ground, bright):
-    """(rows, columns) from -1 for asphalt in the sun to 1 for paint, be it in the sun or in the shade.
+    """(rows, columns) from -1 for asphalt to 1 for paint, be they in the sun or in the shade.
 
     Squares of distances from these, in the usual step from asphalt to paint: light adds to logarithms of brightness, on paint and asphalt alike.
     Where asphalt has two levels and not one that scatters, the brighter one is that of the sun, taken from the metres around.
@@ -57,8 +58,9 @@ def _light(brightness, ground, bright):
     above_sun = brightness - sun
     sure = above_sun[bright & (above_sun > PHOTOGRAPHS.paint_step / 2)]
     step = (PHOTOGRAPHS.paint_step * PHOTOGRAPHS.usual_cells + sure.sum()) / (PHOTOGRAPHS.usual_cells + len(sure))
-    in_sun, in_shade = np.minimum(above_sun / step - 1, 0) ** 2, ((brightness - ground) / step - 1) ** 2
-    return np.clip((above_sun / step) ** 2 - np.minimum(in_sun, in_shade), -1, 1)
+    in_sun, in_shade = above_sun / step, (brightness - ground) / step
+    asphalt, paint = (np.minimum(of_sun**2, of_shade**2) for of_sun, of_shade in ((in_sun, in_shade), (np.minimum(in_sun - 1, 0), in_shade - 1)))
+    return np.clip(asphalt - paint, -1, 1)
 
 
 def _are_paint(z, above, light, bright, rim, labels):
@@ -75,7 +77,8 @@ def _are_paint(z, above, light, bright, rim, labels):
     # a single cell is as broad as long
     across, along = np.linalg.eigvalsh(moments.transpose(2, 0, 1)).T + 1 / 12
     features = (np.clip(left / np.maximum(usual, 1.0), 0.0, PHOTOGRAPHS.most_fading),
-                np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0), np.log(along / across) / 2,
+                np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0),
+                np.minimum(np.log(along / across) / 2, PHOTOGRAPHS.most_elongated),
                 np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach),
                 ndimage.mean(np.nan_to_num(light), np.where(bright, labels, 0), numbers))
     return np.transpose(features) @ PHOTOGRAPHS.nats > 0.0

@@ -7,7 +7,7 @@ does not belong to the road.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -24,7 +24,6 @@ from ..common.decimation import PointDecimation
 from ..common.occlusion import OcclusionGrid
 from ..common.side_curbs import phase_along
 from ..common.sides import SIDE_SIGNS, ahead_of_vehicle, expected_height, hidden_beside, work_sections
-from ..surface.ground_grid import MeasuredGround
 from ..surface.road_look import RoadLook
 from ..weights import CURBS, RETURN
 from .classify import CurbReturn, classify_curbs, has_road_before, is_curb_like
@@ -41,7 +40,7 @@ KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street
 
 def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
                       progress: Progress = Progress(), beside: Mapping[int, Mapping[str, OcclusionGrid]] | None = None,
-                      ground: MeasuredGround | None = None) -> CurbPoints:
+                      look_at: Callable[[int], RoadLook] | None = None) -> CurbPoints:
     """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Where a piece of main curb is found here, hidden places are looked for in the gaps next to it. A main curb that is the side
@@ -50,7 +49,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     curb_points : CurbPoints of every road, of kind main
     beside : number of the road -> side -> OcclusionGrid, what was seen beside it; without, no hidden place is added, and main curbs
         are not looked at for islands
-    ground : MeasuredGround of the survey; without, a curb may lie anywhere
+    look_at : gives the RoadLook of a road; without, a curb may lie anywhere
     """
     survey, lines, parts = decimation.survey, [], []
     roads = survey.store.roads()
@@ -60,7 +59,7 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     searches = {road: _PlanSearch.of(main, survey.frame.road(road), runs[road], behind[road]) for road, (main, _) in mains.items()}
     seen = _steps_in_plan(decimation, searches, settings, progress.part(0.0, RETURN.led_progress))
     works = [_returns_of_road(decimation, road, runs, searches[road], seen[road], settings, usual_height(curb_points[curb_points.road == road]),
-                               None if ground is None else RoadLook(ground, road)) for road in roads]
+                               None if look_at is None else look_at(road)) for road in roads]
     for road, curbs in zip(roads, seen_once(list(in_step(works, decimation.executor, progress.part(RETURN.led_progress, 1.0))))):
         points, hidden = _points_of_road(survey, road, curbs, *mains[road][::-1], beside, curb_points.crs)
         lines += points

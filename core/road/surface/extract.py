@@ -25,7 +25,7 @@ from ...survey.open_survey import Survey
 from ...survey.store.road_points import RoadPoints
 from ..edges.road_edges import RoadEdges
 from ..weights import SURFACE
-from .ground_change import follow_road, smooth_road
+from .ground_change import followed_road
 from .ground_grid import GroundCells, MeasuredGround, windows_of
 from .pavement_edge import Carriageway, edge_offsets, grown_limit
 from .road_points import surface_about, surface_points
@@ -114,12 +114,10 @@ def _carriageway(survey, road, settings, ground, windows, profiled, stations, me
     """The Carriageway of one road, beside whose rows at (R,) stations these edges were measured."""
     cells, profiles = ground.windows(road, windows, profiled)
     prior = survey.road_height(road, stations)
-    if road not in ground.followed:
-        followed = follow_road(cells, prior)
-        ground.followed[road] = followed and (followed, smooth_road(followed, cells))
-    if ground.followed[road] is None:
+    known = followed_road(ground, road, cells, prior)
+    if known is None:
         return None
-    followed, height = ground.followed[road]
+    followed, height = known
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
     limits, grown, closed = {}, {}, {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):

@@ -14,7 +14,7 @@ from scipy.ndimage import gaussian_filter1d, median_filter, uniform_filter1d
 
 from ...common.parallel import by_rows, check_cancelled
 from ..weights import SURFACE
-from .ground_grid import GroundCells, known_median
+from .ground_grid import GroundCells, MeasuredGround, known_median
 
 
 @dataclass
@@ -292,7 +292,15 @@ def _walk(cells, base, columns, start, noise, height, ground):
         ground[:, pair] = (np.abs(measured - z) < tolerance).T
 
 
-def smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
+def followed_road(ground: MeasuredGround, road: int, cells: GroundCells, prior: np.ndarray) -> tuple[_RoadHeight, np.ndarray] | None:
+    """The height of a road, which the ground keeps, as it is followed and smoothed in its cells; None as of `follow_road`."""
+    if road not in ground.followed:
+        followed = follow_road(cells, prior)
+        ground.followed[road] = followed and (followed, _smooth_road(followed, cells))
+    return ground.followed[road]
+
+
+def _smooth_road(road: _RoadHeight, cells: GroundCells) -> np.ndarray:
     """The height of the road smoothed over the cells that show ground; elsewhere as it was followed.
 
     Following lags behind on a crowned road. A mean over 5 rows and 3 columns, weighted by points, does not.

@@ -114,9 +114,10 @@ def _unlike_road(height, rough, brightness, scatter, seen, first):
     # behind a dark patch, ground as bright as the road before the patch may be road or gravel: the rows about the patch decide
     doubtful = (bright > SURFACE.other_sigmas) & (bright < SURFACE.other_sigmas + _darker_patch(unpainted, sigma, first) / sigma)
     bright = np.where(doubtful, 0.0, bright)
-    rougher = _off_course(rough_course, np.hypot(SURFACE.near_rough_sigma, 1.0 / points), seen)
-    off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / SURFACE.height_sigma,
-                  (rough - known_median(rough[:, road], 1)[:, None]) / SURFACE.rough_sigma)
+    rough_sigma, above_road = np.hypot(SURFACE.near_rough_sigma, 1.0 / points), rough - known_median(rough[:, road], 1)[:, None]
+    # behind a strip with few points, which looks smooth, the road is as rough as before it again
+    rougher = np.minimum(_off_course(rough_course, rough_sigma, seen), np.maximum(above_road, 0.0) / rough_sigma)
+    off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / SURFACE.height_sigma, above_road / SURFACE.rough_sigma)
     # hardly any ground is darker than asphalt
     off = np.fmax(off, np.where(bright < 0.0, np.fmin(-bright, SURFACE.other_sigmas), bright))
     # of two that are both off by chance the sum is off by one more

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
 from ...curves.robust import MAD_TO_SIGMA
 from ..weights import CURBS, EDGE, SURFACE
-from .ground_change import follow_road, smooth_road
+from .ground_change import followed_road
 from .ground_grid import MeasuredGround, known_median, median_about
 
 
@@ -27,6 +26,8 @@ class RoadLook:
         self.prior = ground.survey.road_height(road, self.cells.stations)
         driven = known_median(self.cells.rough[:, np.abs(self.cells.offsets) < SURFACE.track_reach], 1)
         self.usual = median_about(driven, SURFACE.rows_of_look)
+        followed = followed_road(ground, road, self.cells, self.prior)
+        self._road = np.full_like(self.cells.height, np.nan) if followed is None else followed[1]
 
     def side(self, sign: int) -> RoadLook:
         """The look to the left, 1, or to the right, -1."""
@@ -101,11 +102,6 @@ class RoadLook:
         with np.errstate(invalid="ignore"):
             level = np.abs(off) < SURFACE.max_height_deviation
         return (seen.mean(0) >= SURFACE.min_seen_between) & (level.sum(0) >= SURFACE.min_level_between * seen.sum(0))
-
-    @cached_property
-    def _road(self):
-        followed = follow_road(self.cells, self.prior)
-        return np.full_like(self.cells.height, np.nan) if followed is None else smooth_road(followed, self.cells)
 
     def _at(self, values, s, u):
         """Values of cells at stations and offsets, NaN beyond them, and their rows."""

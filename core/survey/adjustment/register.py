@@ -19,7 +19,7 @@ from ...common.features import PASS_SIGMA, Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...curves.robust import MAD_TO_SIGMA
-from ...lazy import cv2, laspy
+from ...lazy import laspy
 from ..frame.road_frame import Pass
 from ..frame.row_table import SigmaAlong
 from ..store.columns import Columns
@@ -187,8 +187,9 @@ def _detrended(values):
 
 
 def _box_sum(values, cells):
-    """Moving sums over a number of cells of each row."""
-    return cv2.boxFilter(values, cv2.CV_32F, (cells, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    """Moving sums over an odd number of cells of each row, float32."""
+    total = np.cumsum(np.pad(values, ((0, 0), (cells // 2 + 1, cells // 2))), axis=1, dtype=float)
+    return (total[:, cells:] - total[:, :-cells]).astype(np.float32)
 
 
 def correlation_sums(one: Strips, other: Strips, lags: np.ndarray = LAGS) -> np.ndarray:

@@ -195,6 +195,15 @@ def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
     return None
 
 
+def continue_straight(line: np.ndarray, track: np.ndarray) -> np.ndarray:
+    """A line that goes on straight up to the farthest of a track, where its extension would not reach that; both are (N, 3) positions."""
+    direction = -_direction(line[::-1])
+    ahead = (track[:, :2] - line[-1, :2]) @ direction
+    if ahead.max(initial=0.0) <= FRAME.frame_extension:
+        return line
+    return np.concatenate([line, [[*(line[-1, :2] + ahead.max() * direction), track[np.argmax(ahead), 2]]]])
+
+
 def _append_track(line, track):
     direction = _direction(line[::-1]) * -1.0
     ahead = (track[:, :2] - line[-1, :2]) @ direction

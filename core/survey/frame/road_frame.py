@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 from ..weights import FRAME
-from .road import Road, continue_line, reference_nodes
+from .road import Road, continue_line, continue_straight, reference_nodes
 from .row_table import SigmaAlong
 
 MAX_ROAD_LENGTH = 200_000.0  # derived: m: stations have 32 bits of 0.1 mm; a longer road becomes several
@@ -96,14 +96,18 @@ def _split_at_returns(trajectory, first, last):
         px, py = x[rows], y[rows]
         along = np.r_[0.0, np.cumsum(np.hypot(np.diff(px), np.diff(py)))]
         heading = np.unwrap(np.arctan2(np.gradient(py), np.gradient(px)))
-        cuts = [(int(rows[k]), *(int(rows[m]) for m in (_turn_ends(heading, along, k) if is_turn else (k, k))))
-                for k, is_turn in _return_cuts(px, py, along, heading)]
+        cuts = [tuple(rows[list(cut)].tolist()) for cut in _return_cuts(px, py, along, heading)]
     count = last - first
     cuts = _split_long_pieces(_drop_short_pieces(cuts, driven), driven)
     starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
     ends = [(row + 1, before + 1) for row, before, _ in cuts] + [(count, count)]
-    return [_DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
-            for (a, line_a), (b, line_b) in zip(starts, ends) if b - a > 1]
+    pieces = []
+    for (a, line_a), (b, line_b) in zip(starts, ends):
+        if line_b - 1 <= line_a or driven[line_b - 1] - driven[line_a] < FRAME.min_pass_length:
+            line_a, line_b = a, b
+        if b - a > 1:
+            pieces.append(_DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b))
+    return pieces
 
 
 def _drop_short_pieces(cuts, driven):
@@ -130,16 +134,13 @@ def _split_long_pieces(cuts, driven):
     return sorted([*cuts, *further])
 
 
-def _turn_ends(heading, along, apex):
-    """Indices before and after the apex of a turn on the spot where the vehicle drives in the direction of its lane."""
-    off = np.abs(heading - heading[apex])
-    straight = (off >= FRAME.turn_angle) & (np.abs(along - along[apex]) <= FRAME.turn_reach)
-    before, after = np.flatnonzero(straight[:apex]), np.flatnonzero(straight[apex:])
-    return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
+def _last_in_a_row(rows):
+    """The last of the first run of (N,) ascending rows without a gap."""
+    return int(rows[np.argmax(np.diff(rows, append=rows[-1] + 2) > 1)])
 
 
 def _return_cuts(px, py, along, heading):
-    """[(index, whether it is a turn on the spot)] of the positions at which a new pass begins."""
+    """[(index, last index of the lane before it, first of the lane after it)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(FRAME.same_carriageway, output_type="ndarray")
     if not len(pairs):
         return []
@@ -149,22 +150,27 @@ def _return_cuts(px, py, along, heading):
     back = (turned > np.pi - FRAME.parallel_angle) & (path_between > 4 * FRAME.track_step)
     met_again = (turned < FRAME.parallel_angle) & (path_between > FRAME.min_loop_length)
     crossed = (path_between > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
+    across = np.maximum(*(np.abs((px[j] - px[i]) * np.cos(heading[k]) + (py[j] - py[i]) * np.sin(heading[k])) for k in (i, j))) < FRAME.track_step
     use = back | met_again | crossed
     order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
     for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | met_again)[order], path_between[order]):
         if a < start:
             continue
-        # Split a turn on the spot at its apex, a return where the track is met again, and a loop that crosses itself half way
-        # round, so that neither part has two stations at the crossing, also where it crosses on another level
-        is_turn = bool(is_back and path < FRAME.min_loop_length + 20)
-        if is_turn:
+        # Split a turn on the spot or round a roundabout at its apex, a return where the track is met again, and a loop that crosses itself
+        # half way round, so that neither part has two stations at the crossing, also where it crosses on another level
+        out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
+        width = np.ptp(py[a:b + 1] * out_x - px[a:b + 1] * out_y) / np.hypot(out_x, out_y) if is_back else np.inf
+        if max(width, path / np.pi) < FRAME.turn_reach:
             # the farthest position between two with opposite headings
-            out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
             start = a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
+            # its lanes end where the drive is no longer beside itself, seen from outside: round a roundabout it is so again, across the island
+            beside = (across & back & (i <= start) & (j >= start) & (along[a] - along[i] < FRAME.turn_reach)
+                      & (along[j] - along[b] < FRAME.turn_reach))
+            cuts.append((start, _last_in_a_row(np.unique(i[beside])), -_last_in_a_row(np.unique(-j[beside]))) if beside.any() else (start, a, b))
         else:
             start = b if joins else int(np.searchsorted(along, (along[a] + along[b]) / 2))
-        cuts.append((start, is_turn))
+            cuts.append((start, start, start))
     return cuts
 
 
@@ -393,12 +399,15 @@ def _longest_first(ranges, driven):
 
 
 def _line_of(track, turning, rows):
-    """The track of a range of rows as a line, without turns on the spot at its ends."""
-    straight = np.flatnonzero(~turning[rows[0]:rows[1]])
-    if len(straight) > 1:
-        rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
-    track = track[rows[0]:rows[1]]
-    return track[_moving_rows(*track[:, :2].T)]
+    """The track of a range of rows as a line, which goes on straight beside the halves of turns at its ends."""
+    straight = np.flatnonzero(~turning[rows[0]:rows[1]]) + rows[0]
+    if len(straight) < 2:
+        straight = np.arange(*rows)
+    line = track[straight[0]:straight[-1] + 1]
+    line = line[_moving_rows(*line[:, :2].T)]
+    for half, way in ((track[rows[0]:straight[0]], -1), (track[straight[-1] + 1:rows[1]], 1)):
+        line = continue_straight(line[::way], half)[::way]
+    return line
 
 
 def _grow_road(number, track, turning, moved, driven, waiting):

@@ -143,11 +143,12 @@ def columns_of_roads(store: SectionStore, roads: Sequence[int], names: Sequence[
         known = asked
         if known[0] is not rows:
             order = np.argsort(rows, kind="stable")
-            parts = np.split(order, np.searchsorted(rows, ends[1:-1], sorter=order))
-            known = asked = rows, [(key, part, rows.take(part) - end) for key, part, end in zip(sections, parts, ends) if len(part)]
+            bounds = np.searchsorted(rows, ends, sorter=order)
+            parts = {k: order[bounds[k]:bounds[k + 1]] for k in np.flatnonzero(np.diff(bounds)).tolist()}
+            known = asked = rows, [(store.section(*sections[k]), part, rows.take(part) - ends[k]) for k, part in parts.items()]
         values = np.empty(len(rows), store.dtype[name])
-        for key, part, of_section in known[1]:
-            values[part] = store.section(*key).column_rows(name, of_section)
+        for section, part, of_section in known[1]:
+            values[part] = section.column_rows(name, of_section)
         return values
 
     dtype = store.dtype if names is None else np.dtype([(name, store.dtype[name]) for name in names])

@@ -46,7 +46,7 @@ def asking_all():
     members = [np.arange(*ends) for ends in zip(bounds, bounds[1:])]
 
     def columns(rows):
-        return s[rows], d[rows], np.zeros(len(rows), np.uint16)
+        return s[rows], d[rows], np.zeros(len(rows), np.uint16), s[rows], d[rows]
 
     spots = np.unique(np.concatenate(STRIPES + DASHES) // 400, axis=0) * 0.04
     windows = [np.flatnonzero(np.abs(spots[:, 0] - station) < 2.5) for station in range(18, 80, 3)]
@@ -137,6 +137,6 @@ def test_different_phases_that_are_asked_for_at_once_are_run_as_one(executor, mo
 def test_where_there_is_no_paint_there_is_nothing_to_do():
     def asking():
         combs = yield asked(combs_of_windows, lambda rows: (rows,), [], 0.5)
-        return combs + (yield asked(pieces_of_clusters, lambda rows: (rows, rows, rows), [], 1.0, []))
+        return combs + (yield asked(pieces_of_clusters, lambda rows: (rows,) * 5, [], 1.0, []))
 
     assert in_step([asking()], Threads(1)) == [[]] and in_step([], Threads(1)) == []

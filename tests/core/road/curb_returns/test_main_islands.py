@@ -60,6 +60,15 @@ def test_a_road_that_widens_or_narrows_once_has_none():
     assert not stretches(beside(), before=ISLAND[2])
 
 
+@pytest.mark.parametrize("behind", [0.0, HEIGHT])
+def test_the_nose_of_an_island_in_the_mouth_of_a_street_is_one_unless_the_ground_stays_up_behind_it(behind):
+    grid = beside(behind=behind, curb=20.0)
+    s = np.r_[np.arange(2.0, 9.0), np.arange(12.0, 15.0), np.arange(18.0, 25.0)]
+    nose = (s > 10.0) & (s < 16.0)
+    found = island_stretches(s, np.where(nose, ISLAND[2], ISLAND[2] - 1.3), np.zeros(len(s)), np.full(len(s), HEIGHT), grid)
+    assert [(s[part][0], s[part][-1]) for part, _ in found] == ([] if behind else [(12.0, 14.0)])
+
+
 def test_ground_that_is_low_only_behind_the_curbs_of_the_road_is_none():
     assert not stretches(beside(), before=ISLAND[2] + 1.2, after=ISLAND[2] + 1.2)
 

@@ -50,26 +50,43 @@ def test_a_roundabout_driven_straight_through_is_one_road():
     assert len(frame.roads) == len(frame.passes) == 1
 
 
+def ring(radius, first, last):
+    angles = np.radians(np.linspace(first, last, int(abs(last - first)) + 1))
+    return radius * np.c_[np.cos(angles), np.sin(angles)]
+
+
+def arm(radius, angle, aside):
+    u, (cos, sin) = np.arange(60.0, radius + 5.0, -1.0)[:, None], (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+    return u * [cos, sin] + aside * np.array([-sin, cos])
+
+
+def smooth(*pieces):
+    """A path through the pieces, with a position for every 0.1 m, as a vehicle can drive it."""
+    path = np.concatenate(pieces)
+    way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(path, axis=0).T))]
+    path = np.column_stack([np.interp(np.arange(0.0, way[-1], 0.1), way, axis) for axis in path.T])
+    return gaussian_filter1d(path, 15, axis=0, mode="nearest")
+
+
 @pytest.mark.parametrize("radius", [5, 8, 9, 10])
 def test_who_drives_straight_over_a_small_roundabout_does_not_leap_to_the_arm_that_another_drive_came_from(radius):
     """The first drive crosses from the west to the east, the second one comes from the south and goes round to the west."""
-    def ring(first, last):
-        angles = np.radians(np.linspace(first, last, int(abs(last - first)) + 1))
-        return radius * np.c_[np.cos(angles), np.sin(angles)]
-
-    def arm(angle, aside):
-        u, (cos, sin) = np.arange(60.0, radius + 5.0, -1.0)[:, None], (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
-        return u * [cos, sin] + aside * np.array([-sin, cos])
-
-    def smooth(path):
-        way = np.r_[0.0, np.cumsum(np.hypot(*np.diff(path, axis=0).T))]
-        path = np.column_stack([np.interp(np.arange(0.0, way[-1], 0.1), way, axis) for axis in path.T])
-        return gaussian_filter1d(path, 15, axis=0, mode="nearest")
-    over = smooth(np.concatenate([arm(180, 3.0), ring(205, 305), arm(0, -3.0)[::-1]]))
-    round_it = smooth(np.concatenate([arm(270, 3.0), ring(285, 500), arm(180, -3.0)[::-1]]))
+    over = smooth(arm(radius, 180, 3.0), ring(radius, 205, 305), arm(radius, 0, -3.0)[::-1])
+    round_it = smooth(arm(radius, 270, 3.0), ring(radius, 285, 500), arm(radius, 180, -3.0)[::-1])
     frame = build_frame(joined(drive(over, speed=5), drive(round_it, speed=5, start=2000.0)))
     assert max(np.abs(np.diff(p.s)).max() for p in frame.passes) < 1.0
     assert sum(np.hypot(np.diff(p.x), np.diff(p.y)).sum() for p in frame.passes) > 0.97 * 0.1 * (len(over) + len(round_it)), "all of both drives"
+
+
+@pytest.mark.parametrize("radius", [5, 6, 8, 10])
+def test_who_turns_back_round_a_roundabout_drives_there_and_back_over_one_straight_road(radius):
+    frame = build_frame(drive(smooth(arm(radius, 180, 3.0), ring(radius, 205, 515), arm(radius, 180, -3.0)[::-1]), speed=5))
+    road, (out, back) = frame.roads[0], frame.passes
+    assert len(frame.roads) == 1 and out.direction == -back.direction
+    assert np.abs(road.curvature(np.arange(0.0, road.length))).max() < 1 / 30, "the road goes straight over the island, not round it"
+    for p in (out, back):
+        assert np.abs(np.diff(p.s)).max() < 1.0
+        np.testing.assert_allclose(np.column_stack(road.to_map(p.s, p.d)), np.c_[p.x, p.y], atol=0.01)
 
 
 @pytest.mark.parametrize("aside, way", [(0.5, 1), (3.5, -1), (-3.5, 1)])
