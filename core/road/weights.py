@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..common.setting import table
@@ -303,7 +301,7 @@ class RETURN:
     view_length: float = 5.0   # m ahead of the vehicle and behind it, that part what is seen near from what is seen far
     main_curb_distance: float = 0.25   # m from a main curb within which a step belongs to it
     led_progress: float = 0.9   # share of the work after which faint curbs are looked for
-    max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again
+    max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again, and that its nose is long at most
     # faint curbs
     led_length: float = 4.5   # m along a curb that are averaged: the least length of a faint curb
     led_step: float = 0.5   # m from one average to the next
@@ -456,27 +454,6 @@ class RETURN:
     max_join_overlap: float = 0.3   # m that two such chains may overlap, and
 
 
-@dataclass(frozen=True)
-class EdgeUncertainty:
-    """The shares of an edge's uncertainty.
-
-    foot : m, of a curb's foot, however many points are on it; the most likely one of a main edge is none
-    spacing : m, of the foot by a single laser point; its square falls with N points as N**-points_power
-    scatter : of the RMS of residuals of curb points; more than 1, as a line follows errors that go on over metres and shows less of them
-    end : m, at the end of a line
-    gap : m per m to the nearest curb point
-    bridge : m per m³, in the middle of a bridge, of its length: measured stretches of simulated streets that were bridged came to lie beside their
-        place by 1.5, 4 and 15 cm over 6, 10 and 15 m (95 %). It is a third of that in the mean of a bridge, for what bends change by has long tails
-    """
-
-    scatter: float
-    end: float
-    gap: float
-    foot: float = 0.0
-    spacing: float = 0.0
-    bridge: float = 2e-5
-
-
 @table
 class EDGE:
     """How lines are led through curb points."""
@@ -522,10 +499,12 @@ class EDGE:
     max_refits: int = 8   # fits of such a curve, each with four times the smoothing
     # uncertainty
     scatter_reach: float = 10.0   # m along the line, either way, over which the scatter of curb points is taken
-    points_power: float = 1.3   # more than 1: where points are few, they also lie less regularly on the curb
-    end_length: float = 5.0   # m from its end at which the uncertainty of a line's end has fallen to 1/e in square
-    main_edge: EdgeUncertainty = EdgeUncertainty(spacing=0.10, scatter=1.2, end=0.0015, gap=0.0005)
-    curb_return: EdgeUncertainty = EdgeUncertainty(foot=0.0075, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+    end_length: float = 5.0   # m from its end at which what a line's end is held by one side only has fallen to 1/e in square
+    point_sigma: float = 0.04   # m, of the foot by a single laser point: chosen on 21 simulated streets, for two sigma as well as one
+    # m, of the foot of a curb return (found in plan, from fewer points) or a dropped curb, and m per m³ of its length in the middle of a bridge:
+    # fitted on half of those streets, judged on the others
+    faint_foot: float = 0.005
+    bridge_bend: float = 1e-5
 
 
 @table
@@ -674,6 +653,7 @@ class SURFACE:
     agreeing_length: float = 7.0   # m of road of which most must show the edge
     min_pavement_length: float = 10.0   # m of a line and of the curb beside it: rows are averages of 7 m, so what is shorter is a single observation
     smoothing_length: float = 2.0   # m along the road over which a line through the rows is smoothed: they are averages of 7 m already
+    row_share: float = 0.5   # of one sigma of a single row, that a line through rows is off by: neighbours are off together
     max_row_jump: float = 0.5   # m across from one row to the next at which a line ends: a street joins
     max_line_miss: float = 0.2   # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
     meeting_length: float = 0.5   # m at the end of a line in which it may meet a curb

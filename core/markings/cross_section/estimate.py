@@ -36,7 +36,7 @@ from .sequence import (
     transitions,
     ways,
 )
-from .weights import BARE, CENTRE_LINE, EDGE_LINE, LANE_LINE, SAME_LANE, UNPAINTED, EstimateWeights, Reading, confidence_of
+from .weights import BARE, CENTRE_LINE, DOUBLE, EDGE_LINE, LANE_LINE, SAME_LANE, SOLID, UNPAINTED, EstimateWeights, Reading, confidence_of
 
 FARTHEST_BEHIND = 30.0   # derived: nats at most by which one direction is less probable than the other
 LENGTH_OF_STRETCH = 500   # derived: stations that are looked at together, 250 m of road: what is chosen from takes 0.2 MB for each interval
@@ -206,12 +206,14 @@ def _roads_of_many_lanes(c, sections, evidence, weights):
     before = strips_before(sections)
     i, k, m = np.nonzero(np.isin(sections.strip, (REST_FIRST, REST_SECOND)) & np.isin(before, (FIRST, SECOND)))
     end, lane = sections.right[i, k, m], before[i, k, m]
-    narrow, beyond = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end]
-    parting = (beyond == FIRST + SECOND - lane) & c.painted[i, m] & c.painted[i, end]
-    np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -weights.median_between * parting))
-    # where one border of it has no line, the other one often has none either, on roads that have medians: with lanes beside each other either way
+    narrow, beyond, made_of = c.right[i, m] - c.left[i, end] < NEUTRAL.narrowest_lane, sections.strip[i, k, end], c.made_of[i[:, None], np.c_[m, end]]
+    parting = (beyond == FIRST + SECOND - lane) & (made_of <= DOUBLE).all(axis=1)
+    # roads that have medians have lanes beside each other either way
     median = (beyond == FIRST + SECOND - lane) & (np.minimum(ahead, total - ahead) > 1)[i, k]
-    np.add.at(cost, (i, k), (weights.bare_too - weights.bare[EDGE_LINE]) * median * (c.made_of[i, m] == BARE) * (c.made_of[i, end] == BARE))
+    closed = median & (made_of == SOLID).all(axis=1)
+    np.add.at(cost, (i, k), np.where(narrow, weights.median_within * (beyond == lane), -np.where(closed, *weights.median_between[::-1]) * parting))
+    # where one border of it has no line, the other one often has none either
+    np.add.at(cost, (i, k), (weights.bare_too - weights.bare[EDGE_LINE]) * median * (made_of == BARE).all(axis=1))
     return cost * c.observations(weights)[:, None]
 
 
@@ -335,7 +337,9 @@ def _place_shares(estimate, lanes, chosen, part):
         for values, rows in zip(least_nats, (alike, same_place & ~alike)):
             np.minimum.at(values, lane[rows], nats[compared[rows]])
         directed = 1 / (1 + np.exp(least_nats[0] - least_nats[1]))
-    return chosen_lanes, np.stack([probability, confidence_of(either, directed, estimate.weights)], axis=1)[chosen_lanes].round(6)
+    # that it leads this way is no less probable than the other by all that is known
+    sure = confidence_of(either, np.maximum(directed, 0.5), estimate.weights)
+    return chosen_lanes, np.stack([probability, sure], axis=1)[chosen_lanes].round(6)
 
 
 def _second_readings(estimate, lanes, rows, way, part):

@@ -99,7 +99,9 @@ class EstimateWeights:
     one_way: tuple[float, ...] = (0.4, 1.2, 0.6, 0.4)   # of one, two, three, four lanes and more that all lead one way
     uneven: float = 1.2   # of directions whose numbers of lanes differ by two and more
     median_within: float = 2.3   # of a strip too narrow for a lane between lanes of one direction: of ten medians nine part the directions
-    median_between: float = 0.5   # by what a strip between lines where nobody drives costs less between the directions than elsewhere
+    # by what a strip between lines where nobody drives costs less between the directions than elsewhere, and between solid lines on a road of several
+    # lanes either way: a lane there could not be entered, and of six such strips five are medians
+    median_between: tuple[float, float] = 0.5, 1.7
     two_and_one: float = 0.2   # of two lanes one way and one the other
     two_way_carriageway: float = 4.0   # of two directions on one of two carriageways
     # of two directions where a road was driven more than once, but never back: over `repeats` as of one in five that are surveyed like that

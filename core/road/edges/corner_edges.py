@@ -82,7 +82,7 @@ def _edge_of(points, places, first, last, passes, road, number):
         vertices[-1] = vertices[0]
     vertices[:len(first)], vertices[len(vertices) - len(last):] = first, last
     vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
-    sigma = edge_sigma(along, along, residual, shares=EDGE.curb_return, passes=passes, shared=shared)
+    sigma = edge_sigma(along, along, residual, foot=EDGE.faint_foot, passes=passes, shared=shared)
     # where the returns thin out a line is cut; elsewhere one number speaks for all of it
     vertex_lengths = _chord_length(*vertices.T[:2])
     sigma = np.interp(vertex_lengths * along[-1] / vertex_lengths[-1], along, sigma) if shared.any() else np.full(len(vertex_lengths), sigma.mean())

@@ -220,7 +220,8 @@ def _edges_of_side(source: NoSource, item: tuple[int, str, np.ndarray], frame: R
         t, residual = curve.t[places], curve.residual[places]
         for i, along, known in stretches_of(points, t, residual, np.diff(bridged) | np.diff(lowered)):
             passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
-            sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured], passes=passes)
+            sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured],
+                               foot=EDGE.faint_foot * lowered[i], passes=passes)
             # a bridge is one guess
             pieces.append(EdgePiece(curve.at(along), road, side, "bridged" if bridged[i] else "measured", number, **known,
                                     what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))

@@ -14,7 +14,7 @@ from ...common.layer_rows import LayerRows, column
 from ...survey.frame.placement import COORDINATE_DECIMALS, FrameLines, as_written, line_parts, lines_in_frame
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.frame.row_table import cuts_where_it_changes
-from ..weights import CURBS, EDGE, EdgeUncertainty
+from ..weights import CURBS, EDGE
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # derived: of numbers in the layer, finer than they are known
 
@@ -177,24 +177,23 @@ def _nearest_passes(course, station, frame):
 
 # How uncertain the place of a road edge is: one sigma across it.
 #
-# Seven things add up as squares: the foot of a curb return is found to some millimetres at best, that of a main edge the better the more points are
-# on it; curb points scatter about the line, and their errors go on over metres; towards its ends a line is held from one side only; passes that were
-# driven apart and laid on each other agree on a middle of which nobody knows how far off it is; a bridge is an even bend led across a gap, and off by
-# what the bend changes in it, which grows with the third power of the gap; and where a line was fitted as a whole to few laser points, its curb
-# points are off together by what the fit says. The shares were found on simulated streets with truth (docs/accuracy.md). It holds against the points
-# of the survey: what they are off as a whole, with their trajectory, is in it only where the accuracy of the trajectory was told, since one pass does
-# not show it.
+# Errors of curb points go on over metres, so a line through them averages little out: it is off by as much as they scatter about it, and by what the
+# laser points on each of them leave open, less with their number; its ends are held from one side only. What adds up with it as squares: a bridge is
+# an even bend led across a gap, and off by what the bend changes in it, which grows with the third power of the gap; passes that were driven apart
+# and laid on each other agree on a middle of which nobody knows how far off it is; and where a line was fitted as a whole to few laser points, its
+# curb points are off together by what the fit says. It holds against the points of the survey: what they are off as a whole, with their trajectory,
+# is in it only where the accuracy of the trajectory was told, since one pass does not show it.
 
 
-def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
-               shares: EdgeUncertainty = EDGE.main_edge, passes: np.ndarray | float = 0.0,
-               shared: np.ndarray | float = 0.0) -> np.ndarray:
+def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None, foot: float = 0.0,
+               passes: np.ndarray | float = 0.0, shared: np.ndarray | float = 0.0) -> np.ndarray:
     """One sigma across an edge at places along it.
 
     at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
     support : (N,) laser points of each; below 1, or None, where that is unknown
+    foot : m, one sigma of a curb's foot, however many points are on it
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`; one for all or (K,)
     shared : m, one sigma that neighbouring curb points share, as those of a line that was fitted as a whole: they do not scatter about
         it; one for all or (K,)
@@ -204,15 +203,14 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     first, last = np.searchsorted(places, at - EDGE.scatter_reach), np.searchsorted(places, at + EDGE.scatter_reach, side="right")
     # of a line as long as the road, only the points about the piece
     near = slice(int(first.min()), int(last.max()))
-    inverse_support = np.zeros(near.stop - near.start) if support is None else np.where(support[near] > 0, 1.0 / np.maximum(support[near], 1), 0.0)
-    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(values))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
-                        for values in (np.square(residual[near]), inverse_support))
+    square = np.square(residual[near])
+    if support is not None:
+        square += np.where(support[near] > 0, EDGE.point_sigma**2 / np.maximum(support[near], 1), 0.0)
+    scatter = np.diff(np.append(0.0, np.cumsum(square))[[first - near.start, last - near.start]], axis=0)[0] / np.maximum(last - first, 1)
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
-    gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     length, into = places[k] - places[k - 1], at - places[k - 1]
-    bridge = np.where(length > CURBS.max_joined_gap, 4.0 * shares.bridge * length * np.clip(into * (length - into), 0.0, None), 0.0)
+    bridge = np.where(length > CURBS.max_joined_gap, 4.0 * EDGE.bridge_bend * length * np.clip(into * (length - into), 0.0, None), 0.0)
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
-    variance = (shares.foot**2 + shares.spacing**2 * spacing**EDGE.points_power + shares.scatter**2 * scatter
-                + shares.end**2 * np.exp(-end / EDGE.end_length)
-                + (shares.gap * gap) ** 2 + bridge**2 + passes**2 + shared**2)
-    return np.sqrt(variance)
+    # derived: a straight line through places along it has four times the variance at its ends that it has in its middle
+    held = 1.0 + 3.0 * np.exp(-end / EDGE.end_length)
+    return np.sqrt((foot**2 + scatter) * held + bridge**2 + passes**2 + shared**2)

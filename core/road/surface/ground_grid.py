@@ -153,6 +153,9 @@ def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callab
     u, v = (points.records[name].take(index) * COORDINATE_SCALE - middle.take(owner) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
     ground, shape = points[index], (rows, columns)
+    # few points tell no slope: their mean height is that of the middle of the cell only without the grade of the road
+    grade = np.diff(road_height((first_row + np.arange(rows + 1)) * row_size)) / row_size
+    z -= v * grade.take(row.take(owner))
     height, rough = _planes(owner, count, u, v, z, _views(ground))
     brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(ground, owner, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,

@@ -173,11 +173,11 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         near = stretch_of(stations[rows], start, end)
         passes = frame.passes_sigma(road, s)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
-        # rows scatter by what their places are off by, which is in their sigma; a bridge may wander by as much besides, and bend as one of a curb:
-        # in the mean along it by two thirds of what it bends in its middle
-        guess = 0.0 if status == "measured" else np.hypot(rmse, EDGE.main_edge.bridge * (end - start) ** 3 / 1.5)
-        result.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse,
-                                what="pavement", sigma=float(np.sqrt(np.mean(sigma[near] ** 2) + guess**2 + np.mean(passes**2)))))
+        # the line is off as far as rows scatter about it, and by a share of what one row is; a bridge may bend as one of a curb: in the mean along it
+        # by two thirds of what it bends in its middle
+        bend = 0.0 if status == "measured" else EDGE.bridge_bend * (end - start) ** 3 / 1.5
+        variance = float(SURFACE.row_share**2 * np.mean(sigma[near] ** 2) + rmse**2 + bend**2 + np.mean(passes**2))
+        result.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse, what="pavement", sigma=variance**0.5))
     return result
 
 

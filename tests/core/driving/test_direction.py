@@ -202,3 +202,15 @@ def test_a_lane_beyond_a_median_leads_the_other_way_and_one_on_this_side_of_it_a
     street.paint(1.75 + median, kind="").paint(5.25 + median, kind="")
     ways = {round(float(np.median(street.offsets(line))), 1): (row["direction"], row["confidence"] > 0.9) for line, row in street.lanes()[0]}
     assert ways == {-3.5: (1, True), 0.0: (1, True), 3.5 + median: (-1, True)}
+
+
+@pytest.mark.parametrize("lanes, median", [(2, 3.5), (3, 4.0)])
+def test_a_strip_between_solid_lines_that_no_lane_could_be_entered_through_parts_the_directions_of_several_lanes(lanes, median):
+    """As wide as a lane; before, one was drawn there."""
+    street, middle = Street(length=300.0, vehicle=-median / 2 - 1.8, again=(median / 2 + 1.8,)), median / 2
+    for side in (1, -1):
+        street.paint(side * middle, kind="").paint(side * (middle + 3.6 * lanes), kind="")
+        for number in range(1, lanes):
+            street.paint(side * (middle + 3.6 * number), kind="", pattern="dashed")
+    assert {round(offset, 1): way for offset, way in ways(street).items()} == {
+        round(side * (middle + 3.6 * (number + 0.5)), 1): -side for side in (1, -1) for number in range(lanes)}

@@ -12,15 +12,19 @@ EXACT = np.zeros(len(PLACES))
 
 def test_a_regular_curb_seen_without_scatter_is_as_good_as_its_foot_is_found():
     many = np.full(len(PLACES), 100)
-    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, many), 0.10 * 100**(-1.3 / 2), rtol=0.02)
-    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, shares=EDGE.curb_return), EDGE.curb_return.foot, rtol=0.02)
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, many), EDGE.point_sigma / 10.0, rtol=0.02)
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, EXACT, foot=EDGE.faint_foot), EDGE.faint_foot, rtol=0.02)
 
 
-def test_a_tenth_of_the_points_makes_it_four_times_as_uncertain():
+def test_a_tenth_of_the_points_makes_it_three_times_as_uncertain():
     many, few = (edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), count)).mean() for count in (200, 20))
-    assert few**2 == pytest.approx(10**1.3 * many**2, rel=0.01)
+    assert few**2 == pytest.approx(10.0 * many**2, rel=0.01)
     unknown = edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1))
     np.testing.assert_array_equal(unknown, edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing")
+
+
+def test_a_line_is_off_as_far_as_its_curb_points_scatter_about_it():
+    np.testing.assert_allclose(edge_sigma(MIDDLE, PLACES, np.full(len(PLACES), 0.006)), 0.006, rtol=0.02)
 
 
 def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
@@ -36,7 +40,8 @@ def test_the_middle_of_a_long_gap_is_worse_than_its_ends():
 
 
 def test_the_end_of_an_edge_is_worse_than_its_middle():
-    assert edge_sigma(np.array([0.0]), PLACES, EXACT) > 1.3 * edge_sigma(np.array([50.0]), PLACES, EXACT)
+    end, middle = (edge_sigma(np.array([at]), PLACES, EXACT, np.full(len(PLACES), 50)) for at in (0.0, 50.0))
+    assert end == pytest.approx(2.0 * middle, rel=0.02), "as of a straight line through places along it"
 
 
 def test_passes_that_differ_add_as_squares():
@@ -76,7 +81,7 @@ def test_a_bridge_is_as_uncertain_as_what_the_curb_may_do_in_it_and_that_grows_w
         return float(edge_sigma(np.array([sum(ends) / 2]), places, np.zeros(len(places)))[0])
 
     assert middle_of(1.0) < 0.001, "no bridge: points are joined so far"
-    assert middle_of(5.5) < 0.007 and 0.015 < middle_of(9.5) < 0.025
+    assert middle_of(5.5) < 0.0035 and 0.007 < middle_of(9.5) < 0.0125
     assert middle_of(19.5) / middle_of(9.5) > 7.0
 
 

@@ -8,6 +8,7 @@ from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.road.surface.pavement_lines import with_pavement_edges
 from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
@@ -27,17 +28,17 @@ def half_of(s):
 
 
 def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=90, seed=5, gravel=GRAVEL, gain=None,
-           grey_of=None, misfit=None):
+           grey_of=None, misfit=None, grade=0.0):
     """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
 
     Scatter of heights and returned intensity are those of the three; `keep` : of s and d, False where nothing was scanned. With a `gain`, a
     function of d, half of the points are of a second scanner that returns so many times the intensity; with a `misfit`, a function of d, its
-    points lie so many metres too high; `grey_of` s and d is times the intensity of the ground
+    points lie so many metres too high; `grey_of` s and d is times the intensity of the ground. The street rises by `grade`
     """
     rng = np.random.default_rng(seed)
     along = np.linspace(0.0, LENGTH, 601)
     east = (LENGTH - along if backwards else along) + EAST
-    frame = build_frame(Trajectory(1000 + along / 10, east, np.full(601, NORTH), np.full(601, 100.0 + SENSOR)))
+    frame = build_frame(Trajectory(1000 + along / 10, east, np.full(601, NORTH), 100.0 + SENSOR + grade * (east - EAST)))
     count = int(density * (LENGTH + 8) * 2 * REACH)
     x, y = rng.uniform(-4, LENGTH + 4, count), rng.uniform(-REACH, REACH, count)
     beyond = np.abs(y) - half(x)
@@ -60,7 +61,7 @@ def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shu
     second = np.zeros(len(x), int) if gain is None and misfit is None else rng.integers(0, 2, len(x))
     if misfit is not None:
         z = z + second * misfit(y)
-    records["x"], records["y"], records["z"], records["s"], records["d"] = map(to_units, (*places, z + 100 - frame.origin[2], s, d))
+    records["x"], records["y"], records["z"], records["s"], records["d"] = map(to_units, (*places, z + grade * x + 100 - frame.origin[2], s, d))
     records["time"] = 1000 + np.clip(LENGTH - x if backwards else x, 0, LENGTH) / 10
     records["scanner"], records["intensity"] = second, np.rint(np.where(second, grey * (1.0 if gain is None else gain(y)), grey))
     store = SectionStore(SURVEY_POINT, 20.0)
@@ -109,6 +110,13 @@ def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options)
     assert set(edges.what) == {"pavement"} and set(edges.kind) == {"main"} and set(edges.status) == {"measured"}
     assert np.isnan(edges.height).all() and (edges.sigma > 0).all()
     assert min(covered(edges, survey, 1), covered(edges, survey, -1)) >= 0.95
+
+
+def test_cells_with_few_points_lie_as_high_as_the_road_where_it_climbs():
+    survey = street(density=12, grade=0.08)
+    _, profiles = MeasuredGround(survey).windows(0, [40, 50, 60], [True] * 3)
+    few = (profiles.count * 5 < 6) & (np.abs(profiles.offsets) < HALF - 0.1) & np.isfinite(profiles.height)
+    assert few.sum() > 50 and np.abs(profiles.height[few]).max() < 0.012
 
 
 def test_drawn_edges_lie_neither_inward_nor_outward_by_a_centimetre():
