@@ -33,9 +33,9 @@ class ScannerScatter:
     shares : {scanner: scatter as a share of asphalt's level, the median over squares of 1 m of all roads}; scanners with too few points are left
         out, and are taken for not noisy
     points : {(road, window): (scanners,) points of each scanner}
-    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of the variance around, von Neumann's ratio (1941),
-        the median over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a photograph or of two; 0 of
-        points whose brightness is that of their colours
+    differences : {scanner: mean squared difference of neighbouring points of asphalt as a share of their variance about a plane through the square,
+        von Neumann's ratio (1941), the mean over squares}: 2 where each point scatters by itself, less where neighbours are of one pixel of a
+        photograph or of two; 0 of points whose brightness is that of their colours
     """
 
     shares: dict[int, float]
@@ -48,8 +48,7 @@ class ScannerScatter:
 
     @property
     def photographed(self) -> list[int]:
-        return [scanner for scanner, ratio in sorted(self.differences.items())
-                if ratio < np.interp(self.shares.get(scanner, np.inf), *ASPHALT.photographed)]
+        return [scanner for scanner, ratio in sorted(self.differences.items()) if ratio < ASPHALT.photographed]
 
     def noisy_windows(self, road: int) -> set[int]:
         """The windows of a road in which most points are of noisy scanners: there paint is searched for in averages."""
@@ -104,7 +103,7 @@ def scanner_scatter(road_points: RoadPoints) -> Work:
     squares = [entry for _, entry in measured]
     shares = _shares(squares)
     # in photographs of many pixels, single points scatter as under a scanner
-    differences = dict.fromkeys(shares, 0.0) if road_points.of_colours else _shares(squares, 3)
+    differences = dict.fromkeys(shares, 0.0) if road_points.of_colours else _shares(squares, 3, np.mean)
     return ScannerScatter(shares, {key: count for key, (count, _) in zip(windows, measured)}, differences)
 
 
@@ -144,30 +143,37 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
 
 
 def _differences(points, value, order, starts, count):
-    """(squares,) mean squared difference of the values of points in one cell, by the variance of the square; NaN where few share a cell.
+    """(squares,) mean squared difference of points in one cell, by the variance of the square; NaN where few share a cell.
 
     value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
     """
     if not len(count):
         return np.empty(0)
     square = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)
-    keys = np.stack([square, *(points.records[key][order[place]] // ASPHALT.pixel for key in "sd")])
-    by_cell = np.lexsort(keys[::-1])
-    of = np.where((np.diff(keys[:, by_cell]) == 0).all(axis=0), square[1:], -1)
+    place = order[np.arange(len(square)) + np.repeat(starts - np.cumsum(count) + count, count)]
+    # brightness that falls with distance is no likeness of neighbours: a plane through the square is taken off
+    columns = np.stack([points.s[place], points.d[place], points.intensity[place].astype(float)])
+    columns -= np.stack([np.bincount(square, column) / count for column in columns])[:, square]
+    products = np.array([[np.bincount(square, a * b) for a in columns] for b in columns]).transpose(2, 0, 1)
+    slope = np.linalg.pinv(products[:, :2, :2], hermitian=True) @ products[:, :2, 2:]
+    residual = columns[2] - (slope[square, :, 0].T * columns[:2]).sum(axis=0)
+    # in one cell by order of the points: by that of their values neighbours would be alike
+    keys = np.stack([place, *(points.records[key][place] // ASPHALT.pixel for key in "ds"), square])
+    by_cell = np.lexsort(keys)
+    of = np.where((np.diff(keys[1:, by_cell]) == 0).all(axis=0), square[1:], -1)
     few = np.bincount(of + 1, minlength=len(count) + 1)[1:] < ASPHALT.min_neighbours
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = (ndimage.mean(np.diff(value[place][by_cell]) ** 2, of, range(len(count)))
-                 / ndimage.variance(value[place], square, range(len(count))))
+        # three numbers of each square are those of its plane
+        ratio = ndimage.mean(np.diff(residual[by_cell]) ** 2, of, range(len(count))) * (count - 3) / np.bincount(square, residual**2)
     return np.where(few, np.nan, ratio)
 
 
-def _shares(squares, place=2):
-    """{scanner: median} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
+def _shares(squares, place=2, middle=np.median):
+    """{scanner: median or mean} of what stands at a place of the results of `_scatter_in_squares` in several windows, where that is known."""
     if not squares:
         return {}
     scanner, count, scatter = (np.concatenate([entry[k] for entry in squares]) for k in (0, 1, place))
     known = np.isfinite(scatter)
     scanner, count, scatter = scanner[known], count[known], scatter[known]
     points = np.bincount(scanner, count)
-    return {k: float(np.median(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}
+    return {k: float(middle(scatter[scanner == k])) for k in np.flatnonzero(points >= ASPHALT.min_scanner_points).tolist()}

@@ -31,9 +31,9 @@ class _AsphaltWeights:
     noisy_scatter: float = 0.40   # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
     scatter_square: float = 1.0   # m
     scatter_step: int = 4   # one of so many squares along the road is looked at
-    # shares of asphalt's level that single points scatter by, and of the variance: neighbouring points differ less by brightness of photographs. By a
-    # scanner's they differ by 0.84 of it and more where they scatter by a tenth of the level, by 1.3 where they are quiet (simulated)
-    photographed: tuple[tuple[float, float], tuple[float, float]] = (0.05, 0.10), (1.0, 0.75)
+    # of the variance: neighbouring points differ less by brightness of photographs, by 1.15 of it at most; by a scanner's they differ by 1.47 and
+    # more (simulated, and two real streets)
+    photographed: float = 1.3
     pixel: int = 400   # units of 0.1 mm: points that lie in one such square are neighbours
     min_square_points: int = 30   # points of one scanner
     min_neighbours: int = 5   # pairs of points in one pixel of a square

@@ -301,7 +301,7 @@ class RETURN:
     view_length: float = 5.0   # m ahead of the vehicle and behind it, that part what is seen near from what is seen far
     main_curb_distance: float = 0.25   # m from a main curb within which a step belongs to it
     led_progress: float = 0.9   # share of the work after which faint curbs are looked for
-    max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again
+    max_island_width: float = 8.0   # m within which the ground behind an island's curb comes down again, and that its nose is long at most
     # faint curbs
     led_length: float = 4.5   # m along a curb that are averaged: the least length of a faint curb
     led_step: float = 0.5   # m from one average to the next

@@ -242,10 +242,8 @@ def section_length(files: list[CloudHeader], frame: RoadFrame) -> float:
 
 
 def _sampled(survey, read, progress):
-    """Times, ascending, and places of the points sampled, each once, and a word on those that files have in common."""
+    """Times and places of the points sampled, each once, and a word on those that files have in common."""
     time, place = (np.concatenate(column) for column in zip((np.empty(0), np.empty((0, 3), np.int32)), *read.sampled))
-    order = np.argsort(time, kind="stable")
-    time, place = time[order], place[order]
     if len(survey.files) == 1 or not may_overlap(survey.files):
         return time, place
     rows = distinct_rows(time, place)

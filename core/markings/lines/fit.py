@@ -289,7 +289,7 @@ def _kinds_of_lines(estimates):
         gaps = np.where(is_use, np.inf, nats[:, i, m] - nats[is_use.argmax(axis=0), i, m])
         of, side = np.nonzero((rows >= 0) & (np.diff(rows, prepend=-1) != 0))
         part, station = expand_ranges(c.first[i[of]], c.last[i[of]] + 1)
-        number = road.lines.number[rows[of, side][part], station]
+        number = road.lines.number[rows[of, side][part], station].astype(np.int64)   # 32 bits may not hold the key
         key, count = np.unique((number * len(of) + part)[number >= 0], return_counts=True)
         number, part = np.divmod(key, max(len(of), 1))
         parts.append((number, count.astype(float), use[of[part]], gaps.T[of[part]]))

@@ -2,8 +2,8 @@
 
 A stretch of main curb is the side of an island where the road's curb goes on farther out before it and behind it, and where the ground
 beyond the stretch is as low as the road again before it comes to the line between these two. In the mouth of a street the nose of an island lies
-farther out than both; there the ground must be low again within the width of an island. Such a stretch is left out of the main curbs, so that the
-curb behind it and the outline of the island are looked for.
+farther out than both, is no longer than an island is wide, and has ground behind it that is low again within that width. Such a stretch is left
+out of the main curbs, so that the curb behind it and the outline of the island are looked for.
 """
 
 from __future__ import annotations
@@ -64,9 +64,9 @@ def island_stretches(s: np.ndarray, u: np.ndarray, h: np.ndarray, height: np.nda
     result = []
     for a, b in zip(jump[:-1], jump[1:]):
         before, after = u[a - 1] - u[a], u[b] - u[b - 1]
-        # the nose of an island in the mouth of a street lies farther out than the road's own curbs
-        out = min(before, after) if before > 0.0 else RETURN.max_island_width
-        if before * after > 0.0 and max(s[a] - s[a - 1], s[b] - s[b - 1]) <= CURBS.max_hidden_gap:
+        # the nose of an island in the mouth of a street lies farther out than the road's own curbs; a long stretch is a bay
+        out, longest = (min(before, after), np.inf) if before > 0.0 else (RETURN.max_island_width, RETURN.max_island_width)
+        if before * after > 0.0 and s[b - 1] - s[a] <= longest and max(s[a] - s[a - 1], s[b] - s[b - 1]) <= CURBS.max_hidden_gap:
             down = np.array([_down_behind(*point, out, beside) for point in zip(s[a:b], u[a:b], h[a:b], height[a:b])])
             if np.mean(np.isfinite(down)) >= RETURN.min_island_share:
                 result.append((slice(int(a), int(b)), down))

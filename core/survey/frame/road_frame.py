@@ -16,6 +16,7 @@ import numpy as np
 from scipy.ndimage import binary_closing
 from scipy.spatial import cKDTree
 
+from ...common.arrays import stretch_of
 from ..trajectory.trajectory import Trajectory, clean_trajectory, shaped_trajectory
 from ..weights import FRAME
 from .road import Road, continue_line, continue_straight, reference_nodes
@@ -150,11 +151,12 @@ def _return_cuts(px, py, along, heading):
     back = (turned > np.pi - FRAME.parallel_angle) & (path_between > 4 * FRAME.track_step)
     met_again = (turned < FRAME.parallel_angle) & (path_between > FRAME.min_loop_length)
     crossed = (path_between > FRAME.min_loop_length) & (np.hypot(px[i] - px[j], py[i] - py[j]) < FRAME.track_step)
+    order = np.flatnonzero(back | met_again | crossed)
+    order = order[np.lexsort((-i[order], j[order]))]
+    i, j, back, met_again, path_between = (values[order] for values in (i, j, back, met_again, path_between))
     across = np.maximum(*(np.abs((px[j] - px[i]) * np.cos(heading[k]) + (py[j] - py[i]) * np.sin(heading[k])) for k in (i, j))) < FRAME.track_step
-    use = back | met_again | crossed
-    order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
-    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | met_again)[order], path_between[order]):
+    for a, b, is_back, joins, path in zip(i.tolist(), j.tolist(), back, back | met_again, path_between):
         if a < start:
             continue
         # Split a turn on the spot or round a roundabout at its apex, a return where the track is met again, and a loop that crosses itself
@@ -165,9 +167,10 @@ def _return_cuts(px, py, along, heading):
             # the farthest position between two with opposite headings
             start = a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
             # its lanes end where the drive is no longer beside itself, seen from outside: round a roundabout it is so again, across the island
-            beside = (across & back & (i <= start) & (j >= start) & (along[a] - along[i] < FRAME.turn_reach)
-                      & (along[j] - along[b] < FRAME.turn_reach))
-            cuts.append((start, _last_in_a_row(np.unique(i[beside])), -_last_in_a_row(np.unique(-j[beside]))) if beside.any() else (start, a, b))
+            near = stretch_of(j, start, np.searchsorted(along, along[b] + FRAME.turn_reach) - 1)
+            beside = across[near] & back[near] & (i[near] <= start) & (along[a] - along[i[near]] < FRAME.turn_reach)
+            ends = (_last_in_a_row(np.unique(way * of[near][beside])) * way for way, of in ((1, i), (-1, j)))
+            cuts.append((start, *ends) if beside.any() else (start, a, b))
         else:
             start = b if joins else int(np.searchsorted(along, (along[a] + along[b]) / 2))
             cuts.append((start, start, start))

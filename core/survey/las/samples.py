@@ -172,16 +172,13 @@ def may_overlap(files: Sequence[CloudHeader]) -> bool:
 
 def distinct_rows(time: np.ndarray, place: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are no copies of earlier ones, by (N,) times and (N, 3) places."""
-    order = np.argsort(time, kind="stable")
-    alike = np.diff(time[order]) == 0.0
-    rows = np.sort(order[np.r_[alike, False][:len(time)] | np.r_[False, alike][:len(time)]])
     # copies share a hash, which few others do: Knuth's multiplicative one, by 2**64 over the golden ratio; beyond 64 bits numbers start again from 0
     factor, shift = np.uint64(0x9E3779B97F4A7C15), np.uint64(29)
-    mixed = (np.asarray(time[rows], float) + 0.0).view(np.uint64)
-    for axis in place[rows].T:
+    mixed = (np.asarray(time, float) + 0.0).view(np.uint64)
+    for axis in place.T:
         mixed = (mixed ^ (mixed >> shift)) * factor + axis.astype(np.int64).view(np.uint64)
     ordered = np.sort(mixed)
-    rows = rows[np.isin(mixed, ordered[1:][ordered[1:] == ordered[:-1]])]
+    rows = np.flatnonzero(np.isin(mixed, ordered[1:][ordered[1:] == ordered[:-1]]))
     rows = rows[np.lexsort((*place[rows].T, time[rows]))]
     repeated = (time[rows[1:]] == time[rows[:-1]]) & (place[rows[1:]] == place[rows[:-1]]).all(axis=1)
     return np.delete(np.arange(len(time)), rows[1:][repeated])

@@ -77,6 +77,19 @@ def test_brightness_of_photographs_stays_as_it_is_wherever_the_vehicle_drove_and
     assert np.isnan(road_points.corrected).all() == photographs
 
 
+@pytest.mark.parametrize("noise, shorter, count", [(0.02, 1, 240_000), (0.04, 8, 300_000)])
+def test_what_a_quiet_scanner_sees_fall_with_distance_is_corrected_and_not_taken_for_photographs_however_dense_its_points(noise, shorter, count):
+    """Neighbours are as far from the vehicle, but no more alike than its noise lets them be."""
+    records, across, _ = street(count=count)
+    for name in "xs":
+        records[name] //= shorter
+    records["time"] = 1000 + (records["time"] - 1000) / shorter
+    records["intensity"] = np.rint(6000 / (1 + (across / 4) ** 2) * np.random.default_rng(2).normal(1, noise, count))
+    road_points, report = corrected(records)
+    assert "photographs" not in report.reason
+    assert np.isfinite(road_points.corrected).mean() > 0.9
+
+
 def levels(points, value, paint):
     """Median of asphalt in each metre across and for each scanner, (scanners, metres)."""
     metre = np.floor(points.d).astype(int)

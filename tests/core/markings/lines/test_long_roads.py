@@ -1,11 +1,13 @@
 """Lines of a long road are compared with what lies beside them, not with all lines of the road."""
 
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapely
 from counted_calls import calls
+from lanewright.core.markings.lines import fit
 from lanewright.core.markings.lines.linking import CommonTrend, StretchLookup, link_lines, link_over_long_gaps
 from lanewright.core.markings.lines.selection import same_dash_pattern, select_lines
 from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, Strand
@@ -60,3 +62,14 @@ def test_what_reaches_into_a_stretch_of_road_is_looked_up(first, last):
     end = begin + rng.choice([0.5, 3.0, 120.0], 200)
     assert StretchLookup(begin, end).between(first, last).tolist() == np.flatnonzero((begin <= last) & (end >= first)).tolist()
     assert StretchLookup(begin[:0], end[:0]).between(first, last).tolist() == []
+
+
+def test_a_line_of_a_long_road_among_many_lines_is_named_by_what_it_separates(monkeypatch):
+    """60,000 stretches of a road with the 40,000th line of a survey; before, it had no name."""
+    intervals, number = 60_000, 40_000
+    monkeypatch.setattr(fit, "separated_kinds", lambda sections: np.full((intervals, 1, 1), fit.LANE_LINE))
+    boundaries = SimpleNamespace(painted=np.ones((intervals, 1), bool), rows=np.zeros((intervals, 1, 2), int),
+                                 first=np.arange(intervals), last=np.arange(intervals))
+    estimate = SimpleNamespace(candidates=boundaries, sections=None, choice=np.zeros(intervals, int), second=np.zeros((intervals, 1)))
+    road = SimpleNamespace(estimate=estimate, lines=SimpleNamespace(number=np.full((1, intervals), number, np.int32)))
+    assert fit._kinds_of_lines(SimpleNamespace(roads={0: road})) == ({number: "lane"}, {})

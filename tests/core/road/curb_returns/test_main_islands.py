@@ -69,6 +69,10 @@ def test_the_nose_of_an_island_in_the_mouth_of_a_street_is_one_unless_the_ground
     assert [(s[part][0], s[part][-1]) for part, _ in found] == ([] if behind else [(12.0, 14.0)])
 
 
+def test_a_long_bay_with_a_platform_and_low_ground_behind_it_is_bounded_by_the_road_s_own_curb():
+    assert not stretches(beside(), before=ISLAND[2] - 1.3, after=ISLAND[2] - 1.3)
+
+
 def test_ground_that_is_low_only_behind_the_curbs_of_the_road_is_none():
     assert not stretches(beside(), before=ISLAND[2] + 1.2, after=ISLAND[2] + 1.2)
 
