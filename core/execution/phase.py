@@ -309,15 +309,19 @@ def _tree(value, arrays):
     if kind in PLAIN:
         return value
     if kind in (list, tuple):
-        return {kind.__name__: [item if type(item) in PLAIN else _tree(item, arrays) for item in value]}
+        return {kind.__name__: _trees(value, arrays)}
     if isinstance(value, (np.ndarray, np.generic)):
         return _tree_of_array(value, arrays)
     if kind is dict:
-        return {"dict": [[_tree(key, arrays), _tree(item, arrays)] for key, item in value.items()]}
+        return {"dict": [_trees(pair, arrays) for pair in value.items()]}
     if is_dataclass(value) and "__getstate__" not in kind.__dict__:
-        attributes = (getattr(value, name) for name in _field_names(kind))
-        return {"fields": name_of(kind), "values": [item if type(item) in PLAIN else _tree(item, arrays) for item in attributes]}
-    return {"object": name_of(kind), "state": {name: item if type(item) in PLAIN else _tree(item, arrays) for name, item in _state(value).items()}}
+        return {"fields": name_of(kind), "values": _trees((getattr(value, name) for name in _field_names(kind)), arrays)}
+    state = kind.__dict__.get("__getstate__", vars)(value)
+    return {"object": name_of(kind), "state": dict(zip(state, _trees(state.values(), arrays)))}
+
+
+def _trees(values, arrays):
+    return [item if type(item) in PLAIN else _tree(item, arrays) for item in values]
 
 
 def _tree_of_array(value, arrays):
@@ -331,11 +335,6 @@ def _tree_of_array(value, arrays):
     return {"array" if isinstance(value, np.ndarray) else "scalar": f"a{len(arrays) - 1}"}
 
 
-def _state(value):
-    """The attributes of an object by name."""
-    return type(value).__dict__.get("__getstate__", vars)(value)
-
-
 @cache
 def _field_names(kind):
     return [attribute.name for attribute in fields(kind)]
@@ -346,14 +345,12 @@ def _value(tree, arrays):
         return tree
     kind, content = next(iter(tree.items()))
     if kind in ("list", "tuple"):
-        items = [_value(item, arrays) if type(item) is dict else item for item in content]
+        items = _values(content, arrays)
         return items if kind == "list" else tuple(items)
     if kind == "fields":
-        value = object.__new__(named(content))
-        vars(value).update(zip(_field_names(type(value)), [_value(item, arrays) if type(item) is dict else item for item in tree["values"]]))
-        return value
+        return _object(named(content), dict(zip(_field_names(named(content)), _values(tree["values"], arrays))))
     if kind == "object":
-        return _object(named(content), {name: _value(item, arrays) if type(item) is dict else item for name, item in tree["state"].items()})
+        return _object(named(content), dict(zip(tree["state"], _values(tree["state"].values(), arrays))))
     if kind == "number":
         return np.dtype(content[0]).type(content[1])
     if kind == "texts":
@@ -362,18 +359,21 @@ def _value(tree, arrays):
         return arrays[content]
     if kind == "scalar":
         return arrays[content][()]
-    return {key if type(key) in PLAIN else _value(key, arrays): item if type(item) in PLAIN else _value(item, arrays) for key, item in content}
+    return dict(_values(pair, arrays) for pair in content)
+
+
+def _values(trees, arrays):
+    return [_value(tree, arrays) if type(tree) is dict else tree for tree in trees]
 
 
 def _object(kind, state):
-    """An object of a class of core with the attributes of `_state`."""
+    """An object of a class of core with these attributes, as its `__getstate__` gave them."""
     value = object.__new__(kind)
     restore = kind.__dict__.get("__setstate__")
     if restore is not None:
         restore(value, state)
     else:
-        for name, attribute in state.items():
-            object.__setattr__(value, name, attribute)   # of frozen classes, too
+        vars(value).update(state)   # of frozen classes, too
     return value
 
 

@@ -143,8 +143,6 @@ def _last_in_a_row(rows):
 def _return_cuts(px, py, along, heading):
     """[(index, last index of the lane before it, first of the lane after it)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(FRAME.same_carriageway, output_type="ndarray")
-    if not len(pairs):
-        return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
     path_between = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
