@@ -230,9 +230,11 @@ def _stop_lines(candidates, s, markings, road):
     for first, last, low, high in extents[np.isfinite(extents[:, 0])]:
         ahead = np.maximum(first - end, 0.0) - np.maximum(begin - last, 0.0)
         # its lanes lead up to it from where most of the lines beside and between them end, dashes up to a gap before it
-        lines = (candidates.painted & (candidates.left > low - LANES.stop_margin) & (candidates.right < high + LANES.stop_margin)).sum(axis=1)
-        lines[np.abs(ahead) > SECTIONS.max_dash_gap] = 0
-        ahead -= ahead[np.lexsort((np.abs(ahead), -lines))[0]] * (lines.max() > 0)
+        near = np.flatnonzero(np.abs(ahead) <= SECTIONS.max_dash_gap)
+        between = (candidates.left[near] > low - LANES.stop_margin) & (candidates.right[near] < high + LANES.stop_margin)
+        lines = (candidates.painted[near] & between).sum(axis=1)
+        if lines.any():
+            ahead -= ahead[near[np.lexsort((np.abs(ahead[near]), -lines))[0]]]
         stops += [(k, low, high, ahead[k]) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
     return np.array(stops).reshape(-1, 4)
 
