@@ -139,13 +139,13 @@ def _scatter_in_squares(points: Points) -> tuple[np.ndarray, ...]:
     starts, count = starts[count >= ASPHALT.min_square_points], count[count >= ASPHALT.min_square_points]
     median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
-    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, value, order, starts[lit], count[lit] // 2)
+    return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit], _differences(points, order, starts[lit], count[lit] // 2)
 
 
-def _differences(points, value, order, starts, count):
+def _differences(points, order, starts, count):
     """(squares,) mean squared difference of points in one cell, by the variance of the square; NaN where few share a cell.
 
-    value, order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
+    order : (N,) of points, by squares; starts, count : (squares,) where each begins and how many of its points are looked at
     """
     if not len(count):
         return np.empty(0)

@@ -130,7 +130,7 @@ def _carriageway(survey, road, settings, ground, windows, profiled, stations, me
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
     near_track = followed.ground[:, np.abs(cells.offsets) < SURFACE.track_reach].any(axis=1)
     # rows within 2.5 m of one that shows ground
-    has_road = (np.convolve(near_track, np.ones(11), "same") > 0) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
+    has_road = (np.convolve(near_track, np.ones(11))[5:-5] > 0) & (limits["left"][0] > limits["right"][0] + SURFACE.min_surface_width)
     tolerance = float(np.clip(SURFACE.tolerance_floor + SURFACE.tolerance_sigmas * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(has_road, limits["right"][0], np.nan),
                        np.where(has_road, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,

@@ -110,6 +110,12 @@ def test_the_outline_ends_where_the_points_do_and_goes_on_across_a_short_gap(edg
     assert sum(row["area_m2"] for row in surface.rows) == pytest.approx(39.0 * 8.0, rel=0.04)
 
 
+def test_a_road_of_which_four_metres_were_scanned_has_a_surface_of_four_metres():
+    """All of it lies in one window, which ended the run before."""
+    _, surface = taken(survey(curbs(), keep=lambda s, d: (s > 30.5) & (s < 34.5)), road_edges())
+    assert sum(row["area_m2"] for row in surface.rows) == pytest.approx(4.0 * 8.0, rel=0.15)
+
+
 def test_a_crowned_road_is_taken_to_both_edges():
     surveyed = survey(lambda s, d: curbs()(s, d) - 0.04 * np.abs(d))
     points, _ = taken(surveyed, road_edges())
