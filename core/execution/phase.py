@@ -187,7 +187,7 @@ def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> No
 
     path : of the file
     value : None, bool, int, float, str, numpy arrays and numbers, columns of texts, lists, tuples and dicts of these, and objects of classes of
-        the package whose attributes are such values. A class may leave attributes out by `__getstate__`
+        the package whose attributes are such values. A class may leave attributes out by `__getstate__`, which gives what it is made of anew
     unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
     Raises TypeError if it holds anything else. OSError with a file name, if it cannot be written.
@@ -367,13 +367,11 @@ def _values(trees, arrays):
 
 
 def _object(kind, state):
-    """An object of a class of core with these attributes, as its `__getstate__` gave them."""
+    """An object of a class of core, made of what its `__getstate__` gave, or with these attributes."""
+    if "__getstate__" in kind.__dict__:
+        return kind(**state)
     value = object.__new__(kind)
-    restore = kind.__dict__.get("__setstate__")
-    if restore is not None:
-        restore(value, state)
-    else:
-        vars(value).update(state)   # of frozen classes, too
+    vars(value).update(state)   # of frozen classes, too
     return value
 
 

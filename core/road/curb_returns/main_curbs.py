@@ -123,9 +123,6 @@ class KnownPlaces:
     def __getstate__(self) -> dict:
         return dict(places=np.concatenate([tree.data for tree in self._trees]))
 
-    def __setstate__(self, state: dict) -> None:
-        KnownPlaces.__init__(self, **state)
-
     def and_places(self, x: np.ndarray, y: np.ndarray) -> KnownPlaces:
         """These and (N,) further places; what is known of these is not made anew for every few that come."""
         result = KnownPlaces(np.c_[x, y])

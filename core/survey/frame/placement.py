@@ -157,9 +157,6 @@ class PlaceIndex:
     def __getstate__(self) -> dict:
         return dict(places=self.places, side=self.side)
 
-    def __setstate__(self, state: dict) -> None:
-        PlaceIndex.__init__(self, **state)
-
     def _square(self, places):
         """Row and column of the squares of places."""
         return np.floor(np.asarray(places, float) / self.side).astype(np.int64)

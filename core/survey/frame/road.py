@@ -42,9 +42,6 @@ class Road:
     def __getstate__(self) -> dict:
         return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
 
-    def __setstate__(self, state: dict) -> None:
-        Road.__init__(self, **state)
-
     def _at(self, s):
         # np.clip takes five times as long on few values
         u = np.minimum(np.maximum((np.asarray(s, float) - self.start) / NODE_SPACING, 0), len(self.x) - 1)

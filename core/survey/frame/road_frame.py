@@ -194,9 +194,6 @@ class Pass:
         """What was driven, without the tables that speed up its use."""
         return {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}
 
-    def __setstate__(self, state: dict) -> None:
-        Pass.__init__(self, **state)
-
     def at(self, time: np.ndarray, *names: str) -> list[np.ndarray]:
         """The state of the vehicle at (N,) times, (N,) metres for each of the `names` among "x", "y", "z", "s", "d".
 

@@ -166,9 +166,6 @@ class SharedArrays:
     def __getstate__(self) -> dict[str, Any]:
         return {"folder": str(self.folder)}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(**state)  # type: ignore[misc]
-
     def put(self, arrays: Iterable[np.ndarray]) -> list[ArrayPlace]:
         """Write arrays; where each of them lies."""
         if self._file is not None:
