@@ -597,15 +597,21 @@ def behind_best(cost: np.ndarray, transition: np.ndarray, least: np.ndarray, bes
 
     cost, transition : as of `ways`, of which `least` are the most probable; best : as of `best_sequence`; length : (I,) m of each interval
     """
-    (choice, total), (forward, backward) = best, least
+    (choice, total), all_along = best, min(1.0, repeats / max(float(length.sum()), 1e-9))
     apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
     apart[np.arange(len(choice)), choice] = 0.0
-    # metres for which a sequence has been apart from the best one, up to a cross-section and from it on
-    before, after = apart.copy(), apart.copy()
-    for i in range(1, len(cost)):
-        came = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
-        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came], 0.0)
-    for i in range(len(cost) - 1, 0, -1):
-        goes_on = (transition[i - 1] + (cost[i] + backward[i])[None, :]).argmin(1)
-        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][goes_on], 0.0)
-    return (forward + backward - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9))
+    result, columns = np.full(cost.shape, np.inf), np.arange(cost.shape[1])
+    # the most probable one may differ for metres, where one that differs all along the road is more probable by what counts
+    for share, (forward, backward) in ((1.0, least), (all_along, ways(all_along * cost, transition, np.min))):
+        # nats, and metres for which a sequence has been apart from the best one, up to a cross-section and from it on
+        nats, on, before, after = cost.copy(), np.zeros(cost.shape), apart.copy(), apart.copy()
+        for i in range(1, len(cost)):
+            came = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
+            nats[i] += nats[i - 1][came] + transition[i - 1][came, columns]
+            before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came], 0.0)
+        for i in range(len(cost) - 1, 0, -1):
+            goes_on = (transition[i - 1] + (share * cost[i] + backward[i])[None, :]).argmin(1)
+            on[i - 1] = transition[i - 1][columns, goes_on] + (cost[i] + on[i])[goes_on]
+            after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][goes_on], 0.0)
+        result = np.minimum(result, (nats + on - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9)))
+    return result

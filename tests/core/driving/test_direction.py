@@ -186,6 +186,17 @@ def test_of_four_lanes_parted_by_dashes_alone_all_lead_as_one_drove_and_those_be
     assert all(row["other"] and row["confidence"] > 0.5 for offset, row in rows.items() if offset > 0)
 
 
+def test_of_three_lanes_parted_by_dashes_alone_the_one_beyond_the_middle_remains_open_along_a_long_road():
+    """A short stretch that is read otherwise costs less than all of the road, and says nothing about it."""
+    street = Street(length=1600.0, vehicle=-3.5).paint(5.25, kind="edge").paint(-5.25, kind="edge")
+    for offset in (1.75, -1.75):
+        street.paint(offset, kind="", pattern="dashed")
+    pieces = [(float(np.median(street.offsets(line))), line.length, row) for line, row in street.lanes(traffic_side="right")[0]]
+    far = [(length, row) for offset, length, row in pieces if offset > 2]
+    assert sum(length for length, _ in far) > 1500 and all(row["confidence"] <= 0.6 and row["other"] for _, row in far)
+    assert all(row["confidence"] > 0.9 and row["direction"] == 1 for offset, _, row in pieces if offset < -2)
+
+
 @pytest.mark.parametrize("half", [0.1, 0.15])
 def test_a_double_line_parts_the_directions_of_a_broad_street_that_was_driven_in_its_outermost_lanes(half):
     """As in the United States, where both lines are 10 cm wide and as far apart. Between the drives there is no end of the road."""
