@@ -71,7 +71,7 @@ class CURBS:
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
     thin_width: float = 2.0   # m across in which points are densest: beside the track
-    thin_density: float = 400.0   # points per m² of ground there, below which several profiles are looked at together
+    thin_density: float = 320.0   # points per m² of ground there, below which more of the road is looked at together: whole surveys had 348 and more
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
@@ -594,7 +594,6 @@ class SURFACE:
     farthest_ahead: float = 25.0   # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away, too
     ground_reach: float = 0.7   # m above or below the road under the vehicle, and
     ground_reach_per_metre: float = 0.12   # more per m of offset, within which ground is looked for
-    thin_density: float = 320.0   # points per m² of ground beside the track, below which a window is one profile: whole surveys had 348 and more
     rows_about_thin: int = 10   # rows of profiles before a window, and behind it, that must be thin as well for its own to be looked at together
     # levels of scanners
     level_width: float = 1.0   # m across the road in which the levels of views differ by one factor

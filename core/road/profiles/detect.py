@@ -56,7 +56,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
-    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing, CURBS.thin_density)}
+    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing)}
     # averages need every point
     if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
         profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
