@@ -187,7 +187,7 @@ def _nearest_passes(course, station, frame):
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None, foot: float = 0.0,
                passes: np.ndarray | float = 0.0, shared: np.ndarray | float = 0.0) -> np.ndarray:
-    """One sigma across an edge at places along it.
+    """One sigma across an edge at places along it; on a bridge with the bend that its curb may have.
 
     at : (K,) m along the line, where it is looked at
     places : (N,) m along the line of all its curb points, rising
