@@ -291,9 +291,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     sigma : (I,) m, of the height of one cell
     Returns (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
 
-    References
-    ----------
-    Straight edge: EN 13036-7. Largest of n normal deviates: sigma sqrt(2 ln n), an upper bound of its expectation.
+    Sources: EN 13036-7 (straight edge). Largest of n normal deviates: sigma sqrt(2 ln n), an upper bound of its expectation.
     """
     count = int(round(EDGE_LENGTH / CROSS_CELL)) + 1
     low = max(lane[0] - WHEEL_REACH, carriageway[0])

@@ -5,9 +5,7 @@ next line between which it lies by the phase of the mirror. Section planes are i
 triangles: the side from the point to the place of the same phase on the next line. The intersections in one plane
 are then connected to polylines in the order of the phase. The mesh exists for one window at a time.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 """
 
 from __future__ import annotations

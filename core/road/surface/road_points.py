@@ -116,8 +116,6 @@ def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
 
     Returns _OnRoad
 
-    Notes
-    -----
     Single precision is enough: lengths are in units of 0.1 mm and count from a corner of each cell, so that the rounding
     is below the resolution of the coordinates. The result does not depend on the window.
     """

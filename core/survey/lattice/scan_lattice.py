@@ -1,12 +1,9 @@
 """The scan lattice of a survey: the scan line of every point and its place on the line, from LAS fields alone.
 
-The angle of a point about the trajectory turns with the scanner's mirror. The frequency at which angle and
-time fit best is found in short windows; then the phase is tracked along the pass, which allows for a varying
-rotation rate, tunnels, clipped clouds and missing points. Where the angles do not show the rotation, the
-gap that the sky leaves in every turn may still show in the times.
+The angle of a point about the trajectory turns with the scanner's mirror. The frequency at which angle and time fit best is found in short windows;
+then the phase is tracked along the pass, which allows for a varying rotation rate, tunnels, clipped clouds and missing points. Where the angles do
+not show the rotation, the gap that the sky leaves in every turn may still show in the times.
 
-References
-----------
 .. [1] Kohira and Masuda (2017), ISPRS Annals: points as pixels by time and scanner parameters.
 """
 

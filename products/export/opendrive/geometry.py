@@ -1,8 +1,6 @@
 """The mathematics of OpenDRIVE: piecewise cubics, and the reference line of a road from lines, arcs, spirals and polynomials.
 
-References
-----------
-ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
+Source: ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
 """
 
 from __future__ import annotations
