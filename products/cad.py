@@ -220,7 +220,6 @@ def _elements(plan):
 
 
 def surface_lines(model: SurfaceModel) -> list[_DxfLine]:
-    """The breaklines of a surface, by kind."""
     return [_DxfLine(f"BREAKLINE_{kind.upper()}", places + model.origin) for kind, places in model.followed]
 
 

@@ -96,8 +96,6 @@ class _StraightProblem(_CircleProblem):
 
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
-    """An elliptic arc."""
-
     x: float   # x, y: centre, metres
     y: float
     a: float   # a, b: semi-axes, metres

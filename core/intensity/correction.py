@@ -100,8 +100,6 @@ def saturation_of(road_points: RoadPoints) -> _Saturation:
 
 @dataclass(frozen=True)
 class IntensitySettings:
-    """How intensity is corrected."""
-
     scale: str = "automatic"   # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
 
     def __post_init__(self) -> None:

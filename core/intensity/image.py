@@ -41,8 +41,6 @@ Extent = tuple[int, int, int, int]   # first and last column, first and last row
 
 @dataclass(frozen=True)
 class ImageSettings(Limited):
-    """How the image is interpolated."""
-
     cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")   # m; paint of 0.15 m survives at 0.04
     power: float = setting(2.0, 0.1, 10.0, "The power of the distance")   # of the distance
     beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")   # share of the weight that follows brightness; 0 is plain inverse distance

@@ -114,7 +114,6 @@ class Frame:
 
 
 def frame_of(choice: SheetSettings) -> Frame:
-    """The frame of the plan sheets."""
     long, short = PAPERS[choice.paper]
     return Frame(*((short, long) if choice.orientation == "portrait" else (long, short)), BAND.get(choice.paper, LARGER_BAND))
 

@@ -41,7 +41,6 @@ class XmlElement:
         self.children: Sequence[XmlElement] = ()   # most have none: a list is made for the first
 
     def append(self, child: XmlElement) -> None:
-        """Add a child."""
         if isinstance(self.children, list):
             self.children.append(child)
         else:
@@ -60,7 +59,6 @@ class XmlElement:
         return element
 
     def get(self, name: str, missing: str = "") -> str:
-        """An attribute."""
         return self.attributes.get(name, missing)
 
     def number(self, name: str, missing: float | None = None) -> float:

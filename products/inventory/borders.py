@@ -80,7 +80,6 @@ class RoadBorders:
 
     @property
     def given(self) -> bool:
-        """Whether any layer was given."""
         return any(layer is not None for layer in (self.edges, self.lines, self.driving, self.lane_borders))
 
     def outer(self, road: int, s: float) -> tuple[float, float]:
