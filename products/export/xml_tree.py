@@ -62,10 +62,7 @@ class XmlElement:
         return self.attributes.get(name, missing)
 
     def number(self, name: str, missing: float | None = None) -> float:
-        """A finite number of an attribute.
-
-        Raises RoadExtractionError if it is missing and has no default, or is no number of a map.
-        """
+        """A finite number of an attribute. Raises RoadExtractionError if it is missing and has no default, or is no number of a map."""
         text = self.attributes.get(name)
         if text is None:
             if missing is None:

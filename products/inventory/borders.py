@@ -66,10 +66,7 @@ class _Pieces:
 
 
 class RoadBorders:
-    """Borders of carriageway and lanes, station by station.
-
-    country : whose lanes tell two lines that bound a lane
-    """
+    """Borders of carriageway and lanes, station by station. country : whose lanes tell two lines that bound a lane"""
 
     def __init__(self, layers: BorderLayers, frame: RoadFrame, country: Country):
         self.frame, self.country = frame, country

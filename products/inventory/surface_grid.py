@@ -143,10 +143,7 @@ class Overlap:
 
 @dataclass
 class HeightErrors:
-    """Errors of every group in every window.
-
-    step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)
-    """
+    """Errors of every group in every window. step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)"""
 
     windows: np.ndarray = field(default_factory=lambda: np.empty(0))   # (W,) m, ascending, middles of the windows
     groups: dict[tuple[int, int], int] = field(default_factory=dict)   # {(pass number, scanner): row}

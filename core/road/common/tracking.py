@@ -80,10 +80,7 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
 
 
 def _best_partner(steps, width, direction):
-    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits.
-
-    The steps are sorted by profile, then outward.
-    """
+    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits. The steps are sorted by profile, then outward."""
     profile, u, h, s = steps.profile, steps.u, steps.h, steps.s
     count = len(u)
     span = u.max() - u.min() + 1000.0

@@ -126,10 +126,7 @@ def _rising(low, span, least):
 
 
 def gap_fill_rows(interval: float) -> int:
-    """Scanlines on either side from which the gaps of a scanline are filled.
-
-    interval : m between section planes
-    """
+    """Scanlines on either side from which the gaps of a scanline are filled. interval : m between section planes"""
     return max(int(round(SCANLINE.gap_fill_reach / interval)), 1)
 
 

@@ -252,10 +252,7 @@ def _scatter(owner, values, selected, count):
 
 
 def plane_fit_rows(interval: float, settings: ScanlineBoundarySettings) -> int:
-    """Scanlines on either side of a candidate from which its planes are fitted.
-
-    interval : m between section planes
-    """
+    """Scanlines on either side of a candidate from which its planes are fitted. interval : m between section planes"""
     return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
 
 

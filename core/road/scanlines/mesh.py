@@ -182,10 +182,7 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
 
 
 def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) -> Ribs:
-    """Edges along scan lines that run far along the road, so that a plane may pass between their ends and no rib.
-
-    interval : m between planes
-    """
+    """Edges along scan lines that run far along the road, so that a plane may pass between their ends and no rib. interval : m between planes"""
     station = lines.s / interval
     point = np.flatnonzero((np.diff(np.ceil(station)) != 0) & lines.joined[:-1])   # most have no plane between them and the next point
     least = SCANLINE.slant_share * mirror.spacing * lines.driven[lines.line.take(point)]

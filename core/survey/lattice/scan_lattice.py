@@ -43,10 +43,7 @@ class ScanLattice:
 
 
 def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progress = Progress()) -> ScanLattice:
-    """The scan lattice of every pass and scanner of a Survey.
-
-    rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
-    """
+    """The scan lattice of every pass and scanner of a Survey. rotation_frequency : Hz, turns of the mirror per second; 0 = from the data"""
     return in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor, progress)[0]
 
 

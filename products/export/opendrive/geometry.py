@@ -274,10 +274,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
 
 
 class _Division:
-    """A bundle and how it is divided into pieces.
-
-    knots : (K,) metres; straight : (K - 1,) whether the piece leads straight from place to place
-    """
+    """A bundle and how it is divided into pieces. knots : (K,) metres; straight : (K - 1,) whether the piece leads straight from place to place"""
 
     def __init__(self, number, given):
         self.number, self.given = number, given
