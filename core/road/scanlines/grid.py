@@ -14,10 +14,7 @@ LINE_SEPARATION = 1e3   # derived: m between the offsets of consecutive lines in
 
 @dataclass
 class HeightGrid:
-    """Heights of scanlines at the middles of cells: R section planes, C cells.
-
-    Row r is the plane at station (first + r) * interval. Heights are above the expected road.
-    """
+    """Heights of scanlines above the expected road at the middles of cells: R planes, row r at station (first + r) * interval, and C cells."""
 
     first: int   # number of the first plane
     interval: float   # m between planes
