@@ -33,7 +33,7 @@ setup(
     packages=["lanewright"] + [f"lanewright.{name}" for name in find_packages(".", include=[pattern for name in FOLDERS
                                                                                          for pattern in (name, f"{name}.*")])],
     package_data={"lanewright.products.report": ["templates/*.html"], "lanewright.core.survey.trajectory": ["column_names.txt"],
-                  "lanewright.core.common": ["fields.txt", "words.txt"], "lanewright.core.countries": ["countries.json", "traffic_sides.txt"],
+                  "lanewright.core.common": ["words.txt"], "lanewright.core.countries": ["countries.json", "traffic_sides.txt"],
                   "lanewright.algorithms": ["help.txt"], "lanewright.products.export": ["templates/*"],
                   "lanewright.products.export.check": ["faults.txt", "words.txt"], "lanewright.products.overlay": ["column_names.txt"],
                   "lanewright": ["resources/i18n/*.json", "resources/templates/*.csv"]},

@@ -17,7 +17,7 @@ from models import RECIPES
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 TEMPLATES = ROOT / "products" / "report" / "templates"
-SCHEMAS = ROOT / "core" / "common" / "fields.txt"
+SCHEMAS = ROOT / "core" / "common" / "features.py"
 COUNTRIES = ROOT / "core" / "countries" / "countries.json"
 VOCABULARY, FAULTS = ROOT / "core" / "common" / "words.txt", ROOT / "products" / "export" / "check" / "faults.txt"   # lines of name: text
 HELP = ROOT / "algorithms" / "help.txt"
@@ -27,7 +27,7 @@ FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewher
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
 # The texts of the first are translated as those of a dialog, the last holds names of columns in many languages
-NO_SENTENCES = ("products/report", "core/common/texts.py", "core/survey/trajectory/columns.py")
+NO_SENTENCES = ("products/report", "core/common/features.py", "core/common/texts.py", "core/survey/trajectory/columns.py")
 # Patterns, XML, CRSs, names of columns, commands
 NO_PROSE = re.compile(r"[\\]|<[?x!]|^ *<[A-Za-z]|^[+]proj=|^[A-Z_]+\[|"
                       r"^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
@@ -121,7 +121,10 @@ def legend(path):
 
 def aliases():
     """The spelled-out names of the fields of every layer."""
-    return re.findall(r"^(?:[A-Z_]+ = )?[a-z]\w* (?:int|float|str)[?@]* (.+)$", SCHEMAS.read_text(encoding="utf-8"), re.MULTILINE)
+    tree = ast.parse(SCHEMAS.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Field" and len(node.args) > 2:
+            yield from constants(node.args[2])
 
 
 def core_messages():

@@ -115,12 +115,13 @@ def test_imports_run_one_way_between_folders():
 
 
 def test_products_and_the_simulator_use_public_names_of_the_chain_alone():
-    """Those that `core/public.txt` lists, each with the file that defines it."""
-    lines = [line.partition("#")[0].split() for line in (ROOT / "core" / "public.txt").read_text(encoding="utf-8").splitlines()]
+    """Those that `core/__init__.py` lists, each with the file that defines it."""
+    from lanewright.core import PUBLIC
+
     chain = set(ORDER[ORDER.index("core/survey"):ORDER.index("core/pipeline") + 1])
     used = {(".".join(target[1:]), name) for path in MODULES if name_of(path)[0] != "core" for target, _, name in named_imports(path, True)
             if room_of(target) in chain}
-    assert used == {(line[0].rstrip(":"), name) for line in filter(None, lines) for name in line[1:]}
+    assert used == {(module, name) for module, names in PUBLIC.items() for name in names}
 
 
 def test_no_two_folders_import_each_other():
