@@ -260,7 +260,10 @@ class Call:
 
 
 def run(call, progress):
-    """The results of a call's algorithm by name; RoadExtractionError, one sentence on why, where there are none, Cancelled if the user stopped it."""
+    """Run the algorithm of a call; its results by name.
+
+    Raises RoadExtractionError if there are none, in one sentence on why. Cancelled if the user stopped it.
+    """
     listener = RememberedMessages(progress)
     try:
         claim_memory()

@@ -103,7 +103,10 @@ def trajectory_path(value):
 
 
 def read_trajectory_source(source, crs="", heights_needed=True):
-    """A point layer, line layer or table (VectorSource) as the core's Trajectory, not yet cleaned; heights that are missing and not needed are 0."""
+    """A point layer, line layer or table (VectorSource) as the core's Trajectory, not yet cleaned.
+
+    Without heights, where none are needed, all are 0.
+    """
     if source.kind == LINE:
         columns = _line_columns(source)
         _refuse_empty(source, len(columns["x"]))
@@ -142,7 +145,10 @@ def _line_columns(source):
 
 
 def trajectory_features(trajectory, **further):
-    """A cleaned trajectory as points with road, pass and station, if any; `further` columns, name to (N,) values, are those of an estimated one."""
+    """A cleaned trajectory as a point layer, each row with its road, pass and station where it has one.
+
+    `further` columns, name to (N,) values, belong to an estimated trajectory.
+    """
     placed = [(None, None, None)] * len(trajectory)
     if not trajectory.crs or not core.io.crs.parse_crs(trajectory.crs).is_geographic:
         placed = _road_pass_station(trajectory)
@@ -339,7 +345,10 @@ def corrections_of(call):
 
 
 def read_corrections(source):
-    """A VectorSource as Features with the fields of CORRECTIONS; RoadExtractionError where `action` or `target` is missing."""
+    """A VectorSource as Features with the fields of CORRECTIONS, of which only `action` and `target` have to be there.
+
+    Raises RoadExtractionError if one of these two is missing.
+    """
     index = {name.lower(): k for k, name in enumerate(source.names)}
     missing = [name for name in NEEDED if name not in index]
     if missing:

@@ -45,6 +45,9 @@ def run(name, progress=None, **parameters):
 
 
 def speak(language="en"):
-    """Make help, messages and reports speak a language, such as "de", but no ids, choices, fields and files; RoadExtractionError for another."""
+    """Make help, messages and reports, but no ids, values of choices, fields and files, speak a language, such as "de".
+
+    Raises RoadExtractionError if there is no translation.
+    """
     if not speak_language(language):
         raise RoadExtractionError(f"There are no texts in the language {language}. There are: {', '.join(languages())}.")

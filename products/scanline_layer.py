@@ -189,7 +189,9 @@ SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pas
 
 
 def resample_scanlines(lines: Scanlines, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(N,) number of the line, offset, height, m, and raw intensity of points every `spacing` m along scanlines, from their first vertices."""
+    """Points at equal steps of `spacing` m along every scanline, from its first vertex: (N,) number of the line, offset and local height, m,
+    and raw intensity.
+    """
     if not len(lines):
         return np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0)
     first, last = lines.first[:-1], lines.first[1:] - 1

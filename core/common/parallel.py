@@ -168,7 +168,10 @@ def free_memory() -> None:
 
 
 class ScratchBuffers(threading.local):
-    """Per-thread working arrays by name, whose reuse avoids page faults of new memory; what an array holds is undefined when its use begins."""
+    """Per-thread working arrays by name; reuse avoids the page faults of newly allocated memory.
+
+    The content of an array is undefined at the start of each use.
+    """
 
     def __init__(self) -> None:
         self._arrays: dict[str, np.ndarray] = {}

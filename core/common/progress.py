@@ -31,7 +31,10 @@ class Progress:
     whole: Progress | None = None
 
     def report(self, fraction: float) -> None:
-        """Report the fraction of this computation that is done, at least once per section of road; raises Cancelled if the user cancelled."""
+        """Report the fraction of this computation that is done, 0 to 1.
+
+        Raises Cancelled if the user cancelled. Call it at least once per section of road.
+        """
         if self.whole is not None:
             self.whole.report(fraction)
 

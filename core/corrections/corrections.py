@@ -26,7 +26,10 @@ ACCEPTED, DRAWN = "accepted", "drawn"   # status of what an analyst confirmed, a
 
 @dataclass(frozen=True)
 class Correction:
-    """One row of the layer. lanes : of a second reading that is taken, offset on the road and width, m, and direction of each lane there"""
+    """One row of the layer.
+
+    lanes : of a second reading that is taken, offset on the road and width, m, and direction of each lane that then lies there
+    """
 
     row: int   # its number in the layer, from 1
     action: str   # one of ACTIONS

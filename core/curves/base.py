@@ -86,7 +86,10 @@ class Curve:
 
 
 class TabulatedCurve(Curve):
-    """A curve of t with a table of arc lengths; `_place`, `_slope` and `_bend` of subclasses are (N, 2) position and its derivatives by t."""
+    """A curve of a parameter t, with a table of arc lengths.
+
+    Subclasses define `_place`, `_slope` and `_bend` (position and its first and second derivative by t, (N, 2)).
+    """
 
     first: float   # first, last: t at start and end, of those that have no knots
     last: float

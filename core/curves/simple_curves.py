@@ -14,7 +14,10 @@ from .weights import FITS
 
 
 def fit_lines(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: float = np.inf) -> list[CurveFit]:
-    """Fit an Arc to each line, (x, y) of (N,) metres, N >= 2, in order, by orthogonal, robust least squares. max_misfit : of `CurveProblem.fitted`"""
+    """Fit a straight Arc to each line, (x, y) of (N,) metres, N >= 2, ordered along it, by orthogonal, robust least squares.
+
+    max_misfit : as of `CurveProblem.fitted`
+    """
     return [_StraightProblem(*checked_points(x, y, 2)).fit(max_misfit) for x, y in lines]
 
 

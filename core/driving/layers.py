@@ -144,7 +144,10 @@ LONG_LIST = 4   # derived: numbers: longer parameters of splines are written to 
 
 @dataclass(frozen=True)
 class DrivingLines(LayerRows):
-    """Driving lines in P pieces, each of one lane and status. pattern : (P,) str objects, as "dashed|solid" the lines left and right as one drives"""
+    """Driving lines in P pieces, each of one lane and status.
+
+    pattern : (P,) str objects, the lines to its left and right in the direction of travel, as "dashed|solid"
+    """
 
     GEOMETRY_TYPE, SCHEMA = "LineStringZ", DRIVING_LINES
 

@@ -263,7 +263,10 @@ def _compare(name, versions, here):
 
 
 def _check_workers(client: Any, folder: Path, word: str, named: bool, progress: Progress) -> None:
-    """See that every worker has our code and sees the file `word` in our folder, which the user `named` or not; warn of what slows the work down."""
+    """See that every worker has our code and sees the file `word` in our folder, and warn of what slows the work down.
+
+    `named` tells whether the user chose the folder.
+    """
     for worker, report in _answers(client, look_around, str(folder), word).items():
         if isinstance(report, BaseException) or report["code"] != code_digest():
             raise RoadExtractionError(f"The worker {worker} has another {PACKAGE} than this computer, although maybe of the same version. Install "

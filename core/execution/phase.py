@@ -284,7 +284,10 @@ def is_sealed(path: Path) -> bool:
 
 
 def digest(value: Any, without: str = "") -> str:
-    """32 hexadecimal digits that two values of `write_plain` share only if equal but for the text `without`, the path of a folder that may move."""
+    """32 hexadecimal digits that two values of `write_plain` share only if they are equal.
+
+    The text `without` does not count: the path of a folder that may be moved.
+    """
     arrays: list[np.ndarray] = []
     text = json.dumps(_tree(value, arrays))
     sha = hashlib.sha256((text.replace(json.dumps(without)[1:-1], "") if without else text).encode())

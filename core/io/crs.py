@@ -46,7 +46,10 @@ def horizontal_part(crs: Any) -> Any:
 
 
 def check_metric(crs: Any, what: str) -> None:
-    """Raise RoadExtractionError for a pyproj.CRS that is geographic, geocentric, of heights alone or not in metres. what : "The point cloud", say"""
+    """Raise RoadExtractionError for a pyproj.CRS that is geographic, geocentric or of heights alone, or not in metres.
+
+    what : the subject of the message, such as "The point cloud"
+    """
     flat = horizontal_part(crs)
     if flat.is_geocentric or flat.is_vertical:
         raise RoadExtractionError(f"{what} is in {flat.name}, a CRS of {'geocentric coordinates' if flat.is_geocentric else 'heights alone'}. "

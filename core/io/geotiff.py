@@ -102,7 +102,10 @@ class IntensityImage:
         return [(column, row) for row, column in sorted(tiles)]
 
     def pixel_of(self, x: Any, y: Any, origin: Any = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-        """(N,) float64 column and row of places, (N,) metres less their `origin`, such as RoadFrame.origin; pixel 0 extends from 0 to 1."""
+        """(N,) float64 column and row of places, (N,) metres; pixel 0 extends from 0 to 1.
+
+        origin : map coordinates that were subtracted from x and y, such as RoadFrame.origin
+        """
         left, _, _, top, _, _ = self.geotransform
         return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
             ((top - origin[1]) - np.asarray(y, float)) / self.cell_size

@@ -51,7 +51,10 @@ def offline() -> Iterator[None]:
 
 
 def open_raster(path: str | Path, give: str = "Give a TIFF, JPEG or PNG.") -> Any:
-    """The gdal.Dataset of a raster file, within `gdal_exceptions`; RoadExtractionError, with what to `give`, where it does not hold its pixels."""
+    """The gdal.Dataset of a raster file, within `gdal_exceptions`; RoadExtractionError if its format does not hold its pixels itself.
+
+    give : what to try then, a sentence
+    """
     drivers = RASTER_DRIVERS + ("VRT",) * (Path(path).suffix.lower() == ".vrt")
     try:
         return gdal.OpenEx(str(path), gdal.OF_RASTER | gdal.OF_VERBOSE_ERROR, allowed_drivers=list(drivers))

@@ -62,7 +62,10 @@ STYLES = (_NumberStyle("."), _NumberStyle(","), _NumberStyle(".", "'"), _NumberS
 
 @dataclass(frozen=True)
 class NumberTable:
-    """A table of numbers. preamble, first_row : the lines above the numbers, header included, top down, and the first row's fields as written"""
+    """A table of numbers.
+
+    preamble, first_row : the lines above the numbers, header included, top down, and the fields of the first row as they are written
+    """
 
     values: np.ndarray   # (N, K) float64, NaN where a field is not a number
     preamble: list[str]

@@ -362,7 +362,10 @@ def _between(values, least, most):
 
 
 class HeightHistogram:
-    """Histogram of the depths of points on the track below the trajectory, by pass, in any order. about : first estimate of the sensor height, m"""
+    """Histogram of the depths below the trajectory of points on the track, by pass; independent of the order of adding.
+
+    about : first estimate of the sensor height, m
+    """
 
     def __init__(self, passes: Iterable[int], about: float):
         self.origin = np.floor(about) - READING.height_range

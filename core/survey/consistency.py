@@ -94,7 +94,10 @@ def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label:
 
 
 def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield a sample of road points, evenly over the file, by section: road, (N,) x and y on the map, stations, offsets and z in metres."""
+    """A sample of road points, evenly over the file.
+
+    Yields road number, (N,) x and y in map coordinates, (N,) stations and offsets in metres, and (N,) z, section by section
+    """
     keys = road_points.all_sections()
     for k in np.unique(np.linspace(0, len(keys) - 1, CHECKED_SECTIONS).astype(int)) if keys else ():
         road, number = keys[k]

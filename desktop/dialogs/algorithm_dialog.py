@@ -249,7 +249,10 @@ def _folders_of(cloud):
 
 
 class BatchAlgorithmDialog(_OnePlaceForAll, qgis_batch.BatchAlgorithmDialog):
-    """QGIS's batch of an algorithm, whose name widgets know as that of the table of a batch; `title` stands in its frame."""
+    """QGIS's batch of an algorithm; `title` stands in its frame.
+
+    It has the name of QGIS's own, by which widgets know that they stand in the table of a batch.
+    """
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
         super().__init__(algorithm, parent)

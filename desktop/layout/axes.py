@@ -335,7 +335,10 @@ class Sheet:
 
 
 def sheets_along(axes: list[Axis], width: float, height: float) -> list[Sheet]:
-    """Sheets on which every metre of the axes lies, overlapping where the road goes on. width, height : of the ground that a sheet shows, m"""
+    """Sheets on which every metre of the axes lies; each overlaps those that show how the road goes on.
+
+    width, height : of the ground that a sheet shows, metres
+    """
     sheets: list[Sheet] = []
     for axis in axes:
         left = [LineString(axis.places[:, :2])]

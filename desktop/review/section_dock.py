@@ -250,7 +250,10 @@ class SectionView(QWidget):
 
     def show_section(self, points: np.ndarray, crossings: list[Crossing], message: str = "", scanline: Sequence[np.ndarray] = (),
                      corners: Sequence[tuple[float, float, str]] = ()) -> None:
-        """Show (N, 3) offset, z, intensity, crossings, pieces of the scanline (V, 2) and corners (offset, z, part), else the message."""
+        """Show (N, 3) offset, z and intensity, the crossings, pieces of the scanline (V, 2) and corners (offset, z, part).
+
+        `message` is shown where there is nothing else.
+        """
         self.points, self.crossings, self.message, self.scanline, self.corners = points, crossings, message, list(scanline), list(corners)
         self._fit_heights()
         self.update()

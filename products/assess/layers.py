@@ -352,7 +352,10 @@ def widened_lines(lines: Sequence[Any], widths: Sequence[float] | np.ndarray) ->
 
 
 def marking_polygons(layer: AssessedLayer, line_width: float) -> AssessedLayer:
-    """The layer with lines widened to `line_width` metres, or their fields `width_m` or `width`; RoadExtractionError if it holds points."""
+    """The layer with its lines widened to polygons, to `line_width` metres where they have no field `width_m` or `width`.
+
+    Raises RoadExtractionError if it holds points.
+    """
     check_kind(layer, ("LineString", "Polygon", "GeometryCollection"), "polygons, lines or a mask")
     shapes = list(layer.geometries)
     lines = [k for k, shape in enumerate(shapes) if "LineString" in shape.geom_type]

@@ -51,7 +51,10 @@ def sample_lines(lines: Sequence[shapely.LineString], step: float = LINE_SAMPLE_
 
 
 def constant_runs(points: LinePoints, key: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(R,) first and (R,) last index of the runs of successive points along a line with the same (N,) integer `key`."""
+    """Runs of successive points along a line with the same (N,) integer `key`.
+
+    Returns first, last: (R,) index of the first and the last point of each run
+    """
     if not len(points):
         return np.empty(0, int), np.empty(0, int)
     apart = np.abs(np.diff(points.station)) > 1.5 * np.maximum(points.length[1:], points.length[:-1])

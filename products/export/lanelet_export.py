@@ -321,7 +321,10 @@ def to_degrees(places: np.ndarray, crs: str) -> Degrees:
 
 
 def lanelet2_text(draft: _LaneletDraft, degrees: Degrees, local: bool = False) -> str:
-    """The file as text, of a draft and the degrees of its nodes. `local`: with tags local_x and local_y, m in a square of 100 km, for Autoware."""
+    """The file as text, of a draft and the degrees of its nodes.
+
+    `local`: also write the tags local_x and local_y, metres within a square of 100 km, as Autoware reads them.
+    """
     used = sorted(set().union(*(way.nodes for way in draft.ways)))
     id_of = {node: k for k, node in enumerate(used, start=1)}
     square = np.floor(draft.nodes[used, :2].min(0) / SQUARE) * SQUARE if used and not degrees.local else np.zeros(2)

@@ -38,7 +38,10 @@ Ways = list[tuple[np.ndarray, Mapping[str, Any]]]   # lines of roads, (N, 2) pla
 
 
 def read_osm_ways(path: str, crs: str, progress: Progress = Progress()) -> Ways:
-    """The ways with a tag highway of an XML file of OpenStreetMap, in a CRS (WKT); RoadExtractionError if it is none, or has no road."""
+    """The ways with a tag highway of a file in the XML of OpenStreetMap, in a CRS (WKT).
+
+    Raises RoadExtractionError if the file is none of that kind, or has no road.
+    """
     root = read_xml(path, "osm", "a file in the XML of OpenStreetMap", progress)
     degrees = {node.get("id"): (node.number("lon"), node.number("lat")) for node in root.all("node") if node.get("lat")}
     ways: Ways = []
@@ -53,7 +56,10 @@ def read_osm_ways(path: str, crs: str, progress: Progress = Progress()) -> Ways:
 
 
 def ways_in(ways: Ways, stored: str, crs: str) -> Ways:
-    """Ways with tags or fields (other_tags of GDAL too) from the CRS `stored` in that of the lanes (WKT), in metres, without those for walking."""
+    """Ways with tags or fields from the CRS `stored` in that of the lanes (WKT), in metres; what is for walking is left out.
+
+    The field other_tags, as GDAL writes it, is read too.
+    """
     transformer = pyproj.Transformer.from_crs(stored, crs, always_xy=True)
     roads: Ways = []
     for line, fields in ways:

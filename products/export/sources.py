@@ -501,7 +501,10 @@ def _gone_on(line):
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, apart_from: np.ndarray | None = None) -> _Misses:
-    """Across, of driving lines against the middles of the lanes that are read back, but for what lies within LEFT_OUT_NEAR of (N, 2) `apart_from`."""
+    """Across, of driving lines against the middles of the lanes that are read back.
+
+    apart_from : (N, 2) places; what lies within LEFT_OUT_NEAR of one is left out
+    """
     middles = [sum(exported.borders(k)) / 2 for k in np.flatnonzero(np.isin(exported.type, ("driving", "connector")))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
             if geometry is not None and row.get("status") in (None, "measured")]

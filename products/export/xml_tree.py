@@ -28,7 +28,10 @@ BYTE_ORDER_MARKS = {codecs.BOM_UTF32_LE: "utf-32", codecs.BOM_UTF32_BE: "utf-32"
 
 
 class XmlElement:
-    """One element of an XML file. tag : name; attributes : of str; children : of XmlElement; text : without blanks around it; line : in the file"""
+    """One element of an XML file.
+
+    tag : name; attributes : of str; children : list of XmlElement; text : without blanks around it; line : in the file
+    """
 
     __slots__ = ("attributes", "children", "line", "tag", "text")
 

@@ -33,7 +33,10 @@ class BorderLayers:
 
 @dataclass(frozen=True)
 class Strip:
-    """A lane or the carriageway at one section. curbs : whether its right and left border may be curbs, as no edges of a pavement alone are"""
+    """A lane or the carriageway at one section.
+
+    curbs : whether its right and left border may be a curb: road edges that are not said to be the edge of a pavement without one
+    """
 
     right: float   # right, left: m, offsets of its borders
     left: float
@@ -214,7 +217,10 @@ def _crossings(pieces, road, s):
 
 @dataclass(frozen=True)
 class CrossSectionSettings:
-    """What is measured, and what is too much; a limit of 0 is the country's, if any. min_crossfall, max_crossfall : % of a lane, either way"""
+    """What is measured, and what is too much. A limit of 0 is that of the country, if it has one.
+
+    min_crossfall, max_crossfall : % of a lane, whatever its direction
+    """
 
     interval: float = setting(10.0, 1.0, 1000.0, "The interval", "m")   # m of station between sections
     country: str = NEUTRAL.name   # of the catalogue

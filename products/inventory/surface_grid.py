@@ -191,7 +191,10 @@ def _line(x, y):
 
 
 def height_errors(overlaps: Iterable[Overlap], passes: list[Pass]) -> HeightErrors:
-    """The errors that explain the overlaps of a road best: robust least squares with the priors above. passes : all of the survey, by number"""
+    """The errors that explain the overlaps of one road best: least squares with the priors above, robust against single windows.
+
+    passes : all passes of the survey, by number
+    """
     overlaps = list(overlaps)
     if not overlaps:
         return HeightErrors()

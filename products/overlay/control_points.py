@@ -198,7 +198,10 @@ def _numbers(rows, column):
 
 
 def _in_the_image(pixel, line, used, image, what):
-    """Pixel and line counted downward, also of source coordinates of an image with a position; disabled points may lie anywhere, unless all are."""
+    """Pixel and line, with lines counted downward; source coordinates of an image with a position become pixels.
+
+    Disabled points may lie anywhere, unless all points are disabled.
+    """
     used = used if used.any() else np.ones(len(pixel), dtype=bool)
     margin = 1.0 + 0.02 * max(image.width, image.height)
     forms = [(pixel, -line) if np.median(line[used]) < 0 else (pixel, line)]

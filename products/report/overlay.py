@@ -25,7 +25,10 @@ _ACCEPTED, _REFUSED = (80, 150, 40), (50, 50, 210)  # blue, green, red
 
 
 def georeferencing_report(result: Georeferencing, drawn: str, departure: float) -> str:
-    """The report of a Georeferencing as HTML. drawn : path of the GeoTIFF; departure : pixels between it and the polynomial, of `draw_image`."""
+    """The report of a Georeferencing as HTML.
+
+    `drawn`: path of the GeoTIFF that was drawn. `departure`: pixels between it and the polynomial, from `draw_image`.
+    """
     points, crs = result.points, result.points.crs
     control, check = points.having(CONTROL), points.having(CHECK)
     picture, magnification = _residual_picture(result, drawn)

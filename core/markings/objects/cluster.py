@@ -50,7 +50,10 @@ PAINT_COLUMNS = ("x", "y", "z", "s", "d", "intensity", "corrected", "pass_number
 
 @dataclass(frozen=True)
 class ClusterSettings(Limited):
-    """How points join, and how small a marking may be. distance : m between points of a marking (twice as much along the road, half across it)"""
+    """How points join, and how small a marking may be.
+
+    distance : m between points of one marking (twice as much along the road, half as much across it)
+    """
 
     distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
     min_points: int = setting(8, 1, 100000, "The least number of points of a marking")

@@ -40,7 +40,10 @@ def _of_several(length, breadth):
 
 
 def parts_of_compound(s: np.ndarray, d: np.ndarray, spacing: np.ndarray) -> np.ndarray:
-    """The part of every point of one cluster, (N,) int from 0. s, d : (N,) int, 0.1 mm; spacing : (N,) int, mm between the tracks of the scan."""
+    """The part of every point of one cluster, (N,) int from 0 on.
+
+    `s`, `d` : (N,) int, units of 0.1 mm; `spacing` : (N,) int, mm between the tracks of the scan.
+    """
     cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
     reach = np.zeros(len(cells))
     reach[member] = track_reach(spacing)

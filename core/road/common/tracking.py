@@ -296,7 +296,10 @@ class _Paths:
         return total[k], self.path[known[k]]
 
     def _across_the_road(self, s, u, h, end_s, end_u, end_h, gap, jump):
-        """(N,) costs of going on from (N,) places to another one over road, infinite where not all of it is; the road's own crossfall is no climb."""
+        """(N,) costs of going on from (N,) places to another one over ground that is road all the way, infinite where it is not.
+
+        The road's own crossfall is no climb.
+        """
         foot = np.array(CURBS.road_before_curb[1])   # on the road before the curb
         level = self.look.level_to(s, u - foot, end_s, end_u - foot)
         above, end_above = h - self.look.road_height(s, u - foot), end_h - self.look.road_height(np.array(end_s), end_u - foot)

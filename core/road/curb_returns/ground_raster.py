@@ -131,7 +131,10 @@ def _sums(place, h, cells):
 
 
 def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | None:
-    """A raster of the mean points of cells RETURN.averaging_cell wide, with `noise` as what remains of it; None where there are no points."""
+    """A raster of the mean points of cells RETURN.averaging_cell wide, which reduces the noise; `noise` is what remains of it.
+
+    None where there are no points.
+    """
     if raster is None:
         return None
     column, row = np.floor(raster.x / RETURN.averaging_cell).astype(np.int64), np.floor(raster.y / RETURN.averaging_cell).astype(np.int64)

@@ -129,7 +129,10 @@ class LineEnds:
         return LineEnds(*(np.array([_tip(x[::step], y[::step], h[::step], length) for x, y, h in places]).reshape(-1, 5) for step in (-1, 1)))
 
     def straight_successors(self, long: np.ndarray) -> np.ndarray:
-        """(K,) the line straight ahead of each, up to RETURN.max_straight_gap away, else -1; `long` : (K,) bool, long enough for a direction."""
+        """The line straight ahead of each, up to RETURN.max_straight_gap away; `long` : (K,) bool, lines long enough for a direction.
+
+        Returns (K,) indices, -1 where there is none
+        """
         if not len(self.heads):
             return np.empty(0, np.int64)
         a, b, gap, tail, head, (dx, dy), turn = self._gaps(RETURN.max_straight_gap)

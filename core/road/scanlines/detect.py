@@ -116,7 +116,10 @@ def _corners(lines, heights, rows, interval, candidates, settings):
 
 
 def merged_corners(seen: Sequence[CurbCorners]) -> CurbCorners:
-    """One corner where several passes or scanners measured the same one: their mean by support. seen : CurbCorners of each pass and scanner"""
+    """One corner where several passes or scanners measured the same one: their mean, weighted by support.
+
+    seen : CurbCorners of each pass and scanner
+    """
     upright, sloped = (merged_passes([part[part.sloped == kind] for part in seen]) for kind in (False, True))
     # where one pass or scanner shows an upright face, what others show less sharply is no other curb
     around = np.arange(-SCANLINE.neighbour_lines, SCANLINE.neighbour_lines + 1)[:, None]

@@ -14,7 +14,10 @@ LINE_SEPARATION = 1e3   # derived: m between the offsets of consecutive lines in
 
 @dataclass
 class HeightGrid:
-    """Heights of scanlines above the expected road at the middles of cells: R planes, row r at station (first + r) * interval, and C cells."""
+    """Heights of scanlines at the middles of cells: R section planes, C cells.
+
+    Row r is the plane at station (first + r) * interval. Heights are above the expected road.
+    """
 
     first: int   # number of the first plane
     interval: float   # m between planes

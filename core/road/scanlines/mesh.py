@@ -45,7 +45,10 @@ class ScannerLines:
 
 @dataclass
 class Ribs(Rows):
-    """R sides of the mesh that section planes intersect: from the point `point` to a place between the point `ahead` and the one after it."""
+    """R sides of the mesh that section planes intersect.
+
+    A rib runs from the point `point` to a place between the point `ahead` and the one after it.
+    """
 
     point: np.ndarray   # point, ahead: (R,) int, indices of points
     ahead: np.ndarray

@@ -151,7 +151,10 @@ def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
 
 
 def _take_points(survey, carriageways, road_points, cubes, progress):
-    """Put surface points into `road_points`, counts into `cubes`; {road: points in each row of cells}. `carriageways` : {road: Carriageway}"""
+    """Put the surface points into `road_points`, and what is counted of sections into `cubes`; {road: points in each row of cells}.
+
+    `carriageways` : {road: Carriageway}
+    """
     per_row = {road: np.zeros(len(carriageway.height), np.int64) for road, carriageway in carriageways.items()}
     executor, length = survey.executor, survey.store.section_length
     phase = Phase(surface_points, road_points, (), **survey.along(lambda item: (item[0][0], item[0][1] * length, item[0][2] * length),

@@ -403,7 +403,10 @@ def _height_apart(survey, pair, k):
 
 
 def _message_of_carriageways(pair: Beside, up: np.ndarray) -> tuple[str, bool]:
-    """What is said of two roads beside each other, and whether it warns. up : (N,) m that points of the second lie higher, NaN where unknown"""
+    """What is said of two roads beside each other, and whether it is a warning.
+
+    up : (N,) m by which the points of the second lie higher, NaN where both hardly see the same
+    """
     measured = np.isfinite(up)
     far = measured & (np.abs(up) > ADJUST.max_height_apart)
     intro = (f"Road {pair.other} runs beside road {pair.one} at its stations {pair.stations.min() - REGISTER.correction_step / 2:.0f} to "

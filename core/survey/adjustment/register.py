@@ -436,7 +436,10 @@ def best_offsets(likeness: np.ndarray, lags: np.ndarray = LAGS) -> tuple[np.ndar
 
 
 def _second_best(unlikely, best):
-    """(N,) the smallest local minimum of (N, L) values apart from the best, as slabs give one stone farther; infinite where there is none."""
+    """(N,) the smallest local minimum of (N, L) values apart from the best; infinite where there is none.
+
+    Slabs and cobbles correlate again one stone farther.
+    """
     dips = np.zeros(unlikely.shape, bool)
     dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
     dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > REGISTER.peak_cells

@@ -231,7 +231,10 @@ def _moves_of(seen):
 
 
 def _jackknife(left_out):
-    """(3,) sigma of an estimate from (N, 3) estimates without one window each (Tukey 1958); infinite where half of these show nothing."""
+    """(3,) sigma of an estimate from (N, 3) estimates without one window each (Tukey 1958).
+
+    Infinite where half of these show nothing: the estimate then depends on single windows.
+    """
     values = np.array(left_out)
     count = np.isfinite(values).sum(axis=0)
     mean = np.nansum(values, axis=0) / np.maximum(count, 1)

@@ -295,7 +295,10 @@ def _in_vehicle_frame(sample, trajectory, stretch):
 
 
 def _vehicle_angles(trajectory: Trajectory, stretch: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(N,) roll, pitch and yaw, radians counter-clockwise from east, else from the way driven. stretch : by which heights are multiplied before"""
+    """(N,) roll, pitch and yaw (counter-clockwise from east) in radians; from the way driven where the trajectory has none.
+
+    stretch : by which heights are multiplied before
+    """
     attitude = trajectory.attitude()
     if attitude is not None:
         return attitude[0], attitude[1], np.pi / 2 - attitude[2]

@@ -331,7 +331,10 @@ def _refuse_without_road(tracks: list[FirstTrack]) -> None:
 
 
 def _refuse_terrestrial(tracks: list[FirstTrack], places: list[np.ndarray]) -> None:
-    """Refuse a cloud measured from one place. places : (N, 2 or more) m of scanners in order of time, some of them wrong; none where not known"""
+    """Refuse a cloud that was measured from one place.
+
+    places : (N, 2 or more) m, where scanners were seen, in order of time, some of them wrong; none where that is not known
+    """
     if places := [place[:, :2] for place in places if len(place)]:
         # a vehicle may stand most of the time, but where it drives, it is seen several times
         steady = np.concatenate([median_filter(place, (ESTIMATE.steady_places, 1), mode="nearest") for place in places])

@@ -126,7 +126,10 @@ def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
 
 
 def passes_to_features(frame: RoadFrame, crs: str) -> Features:
-    """The layer PASSES: where the vehicle drove, a row a pass in order of time, drawn as it was driven with a vertex every half metre."""
+    """The layer PASSES in map coordinates: where the vehicle drove, as the run used it.
+
+    One row a pass in order of time, drawn as it was driven with a vertex every half metre.
+    """
     layer = Features("LineStringZ", list(PASSES), crs=crs)
     for p in frame.passes:
         rows = decimate_by_distance(p.x, p.y, FRAME.standstill_radius)

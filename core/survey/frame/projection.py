@@ -25,7 +25,10 @@ NODE_TOLERANCE = 1e-3         # derived: of a node spacing beyond the ends: the 
 
 
 class _LineLookup:
-    """The reference line of a road by node, lengths in nodes (NODE_SPACING metres); `bend` is the offset of a point times the curvature."""
+    """The reference line of a road in tables by node.
+
+    Lengths are in nodes (NODE_SPACING metres). `bend` is the offset of a point times the curvature of the line.
+    """
 
     def __init__(self, road: Road):
         self.road, self.last, self._scratch = road, len(road.x) - 2, ScratchBuffers()

@@ -138,7 +138,10 @@ NODE_SPACING = 0.1     # derived: m between nodes of the reference line: 0.02 mm
 
 
 def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes x, y (M,) of the reference line along a track that moves, (N, 2) or (N, 3) m: NODE_SPACING apart, extended at both ends."""
+    """Nodes x, y (M,) of the reference line along a track, (N, 2) or (N, 3) m: NODE_SPACING apart, extended at both ends.
+
+    A track that does not move is refused.
+    """
     x, y = line[:, 0], line[:, 1]
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     unique = np.r_[True, np.diff(driven) > 0]

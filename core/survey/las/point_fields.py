@@ -355,7 +355,10 @@ def valid_points(block: Any) -> np.ndarray | None:
 
 
 def first_returns(block: Any, slots: TimeSlots | None = None, origin: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0)) -> tuple[np.ndarray, ...]:
-    """(N,) gps_time, (N, 3) m from the origin, (N, 2) SCANNER_FIELDS of the usable first returns of a block, of those in `slots` if not None."""
+    """(N,) gps_time, (N, 3) m from the origin, and (N, 2) values of SCANNER_FIELDS, of the usable first returns of a block.
+
+    slots : those in the sample alone; None for all
+    """
     raw, names = block.array, set(block.point_format.dimension_names)
     time = raw["gps_time"].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(raw))
     first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)

@@ -344,7 +344,10 @@ def rough_metres(x: np.ndarray, y: np.ndarray, crs: str) -> tuple[np.ndarray, np
 
 
 def driven_course(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(K,) indices of positions `min_course_step` of driving apart, and (K,) courses, degrees from north. x, y : (N,) metres, in driving order"""
+    """(K,) indices of positions, at least `min_course_step` of driving apart, and (K,) courses there, degrees clockwise from north.
+
+    x, y : (N,) metres, in driving order
+    """
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     spacing = max(TRAJECTORY.min_course_step, driven[-1] / TRAJECTORY.max_course_rows)
     cell = np.floor(driven / spacing)

@@ -85,7 +85,10 @@ def on_spirals(u: np.ndarray, x: Any, y: Any, heading: Any, bend: Any, change: A
 
 @dataclass(frozen=True)
 class PlanElement:
-    """A piece of a reference line. values : line (); arc (curvature,); spiral (at start, at end); poly3 (a, b, c, d); paramPoly3 (of u, then of v)"""
+    """One piece of a reference line.
+
+    values : line (); arc (curvature,); spiral (curvature at start, at end); poly3 (a, b, c, d); paramPoly3 (a, b, c, d of u, then of v)
+    """
 
     s: float   # s, x, y, heading, length: start and length, metres and radians
     x: float
@@ -183,7 +186,10 @@ class PlanView:
         return s, dy * np.cos(heading) - dx * np.sin(heading)
 
     def jumps(self, gap: float, kink: float) -> list[tuple[float, float, float]]:
-        """(s, metres, radians) where an element begins elsewhere, or in another direction, than the one before ends: from `gap` or `kink` on."""
+        """(s, metres, radians) where an element begins elsewhere, or in another direction, than the one before ends.
+
+        gap, kink : metres and radians from which it counts
+        """
         jumps = []
         for before, after in zip(self.elements[:-1], self.elements[1:]):
             x, y, heading = before.end()

@@ -433,7 +433,10 @@ def _crossing(points, a, b):
 
 
 def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, straight right of its first t, and linear between them."""
+    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them.
+
+    Right of the first t its cubic goes on straight.
+    """
     if not len(shape):
         return np.zeros(len(s))
     rows = shape[np.lexsort((shape[:, 1], shape[:, 0]))]

@@ -55,7 +55,10 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
 
 def reference_steps(points: np.ndarray, tolerance: float, ends: tuple[float | None, float | None] = (None, None),
                     turn_tolerance: float = 0.01) -> Steps[PlanView | None]:
-    """`fit_reference` as a task, to fit many lines side by side. turn_tolerance : radians that an arc or a line may miss the heading at the end"""
+    """`fit_reference` as a task, so that many lines are fitted side by side.
+
+    turn_tolerance : radians by which an arc or a line may miss the heading at the end
+    """
     points = np.asarray(points, float)
     fit, goal = (yield from _fit_of(points, tolerance, ends, turn_tolerance)), None
     if ends[1] is not None and abs(wrapped((yield _smoothed, (fit, fit.last))[2] - ends[1])) > turn_tolerance:

@@ -287,7 +287,10 @@ def _border_bundles(shape, strip, tolerance, directions):
 
 
 def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], sections: list[list[Cubics]]) -> list[list[int]]:
-    """Give a road lane offset and sections with widths, by the functions of their borders; for every slice the numbers of its cells' lanes."""
+    """Give a road its lane offset and sections with widths, by the functions of their borders.
+
+    Returns for every slice the numbers of the lanes of its cells
+    """
     offsets, numbers = [], []
     lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([part.length for part in strip])))
     for start, part, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):

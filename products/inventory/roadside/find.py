@@ -34,7 +34,10 @@ EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge
 
 def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), settings: RoadsideSettings = RoadsideSettings(),
                   progress: Progress = Progress()) -> Roadside:
-    """Lines of rails, barriers, walls, fences and hedges beside every road: without layers, all that is more than 2 m from a track."""
+    """Lines of rails, barriers, walls, fences and hedges beside every road.
+
+    layers : BorderLayers; without them what is more than 2 m from a track counts as beside the road
+    """
     borders = RoadBorders(layers, survey.frame, country(settings.country))
     roadside = Roadside([], {}, {}, survey.frame, survey.crs, settings)
     level = level_views(survey)
