@@ -49,7 +49,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
 
     rows, cells : (M,) profiles and cells in which the ground rises
     min_height, max_height : m, of a step
-    least_evidence : nats of `step_evidence` that a step must have where few points show it
+    least_evidence : nats of `_step_evidence` that a step must have where few points show it
 
     Returns CurbSteps, at most M, in the order of the cells
     """
@@ -85,13 +85,13 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
         owner, index = everywhere
         point = lines.point.take(index)
         s = lines.s.take(point) - best["s"].take(owner)
-        good = good & (step_evidence(owner, lines.u.take(point) - best["u"].take(owner) - best["skew"].take(owner) * s, s, lines.h.take(index),
+        good = good & (_step_evidence(owner, lines.u.take(point) - best["u"].take(owner) - best["skew"].take(owner) * s, s, lines.h.take(index),
                                      lines.noise[rows]) >= least_evidence)
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
                      **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
 
 
-def step_evidence(owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray) -> np.ndarray:
+def _step_evidence(owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray) -> np.ndarray:
     """(M,) nats by which a step explains the heights about each of M places better than ground that bends there or ramps up.
 
     Each is added to a plane that goes on across the place; what it leaves counts in units of that and the scanner's noise.
