@@ -1,7 +1,6 @@
 """Lanewright: from a mobile laser scanning survey to a road map, inside QGIS.
 
-Importing this package loads nothing, so the `core` works without QGIS; the
-plugin itself begins in `classFactory`.
+Importing this package loads nothing, so the `core` works without QGIS; the plugin itself begins in `classFactory`.
 """
 
 import importlib
@@ -13,9 +12,8 @@ import warnings
 def add_library_folders(profile=""):
     """Let Python find laspy, lazrs and shapely where users without system packages keep them.
 
-    The folders go to the end of the search path: what QGIS brings (numpy, GDAL,
-    pyproj) must win, or its compiled parts meet a numpy they were not built for.
-    `profile` is the folder of the QGIS profile, for a plugin that lies elsewhere.
+    The folders go to the end of the search path: what QGIS brings (numpy, GDAL, pyproj) must win, or its compiled parts meet a numpy they were not
+    built for. `profile` is the folder of the QGIS profile, for a plugin that lies elsewhere.
     """
     here = os.path.dirname(os.path.abspath(__file__))
     folders = os.environ.get("LANEWRIGHT_LIBS", "").split(os.pathsep)
@@ -48,10 +46,9 @@ def _dependency_folders(python_folder):
 def load_shapely():
     """Import shapely so that it calls the GEOS it came with.
 
-    A shapely from PyPI carries its own GEOS. The programs qgis and qgis_process are linked to
-    the system's, and on Linux the symbols of a program win over those of a library loaded
-    later: shapely would call into another version of GEOS and crash, in prepared geometries
-    for one. Bound deeply, a library looks among its own symbols first.
+    A shapely from PyPI carries its own GEOS. The programs qgis and qgis_process are linked to the system's, and on Linux the symbols of a program win
+    over those of a library loaded later: shapely would call into another version of GEOS and crash, in prepared geometries for one. Bound deeply, a
+    library looks among its own symbols first.
     """
     if "shapely" in sys.modules or not hasattr(os, "RTLD_DEEPBIND"):
         return

@@ -90,7 +90,6 @@ class Algorithm:
         self.add(ParameterSpec(kind, name, **more))
 
     def add_map_layer(self, name, **more):
-        """Add a layer of the road map as an input."""
         self.add_input("layer", name, geometry=MAP_LAYERS[name].geometry, **more)
 
     def add_survey(self, trajectory_optional=False):
@@ -114,7 +113,6 @@ class Algorithm:
         self.add_output("layer", name, help=tr("Fields: {fields}.", fields=listed) if fields else "", schema=tuple(fields), **more)
 
     def add_map_sink(self, name, **more):
-        """Add a layer of the road map as an output."""
         self.add_sink(name, MAP_LAYERS[name].schema, geometry=MAP_LAYERS[name].geometry, **more)
 
     def add_output(self, kind, name, **more):

@@ -74,7 +74,6 @@ class Call:
     # -- in ---------------------------------------------------------------------------------
 
     def given(self, name):
-        """Whether the user gave anything for a parameter."""
         return self.parameters.get(name) not in (None, "", [])
 
     def point_clouds(self):
@@ -146,7 +145,6 @@ class Call:
         return settings_class(specs[0].settings)(**{spec.field: self.value(spec.name) for spec in offered}, **more)
 
     def wants(self, name):
-        """Whether an optional output was asked for."""
         return bool(self.destination(name))
 
     # -- out --------------------------------------------------------------------------------

@@ -112,11 +112,9 @@ class Unfinished:
         return self._folders[destination] / destination.name
 
     def begun(self):
-        """The paths to write to."""
         return [folder / destination.name for destination, folder in self._folders.items()]
 
     def forget(self, destination):
-        """Remove what was begun for one destination."""
         shutil.rmtree(self._folders.pop(Path(destination).absolute()), ignore_errors=True)
 
     def begin_copy(self, destination):
@@ -143,7 +141,6 @@ class Unfinished:
         return text
 
     def discard(self):
-        """Remove everything that was begun and not committed."""
         for folder in self._folders.values():
             shutil.rmtree(folder, ignore_errors=True)
         self._folders = {}

@@ -68,7 +68,6 @@ EXPORTED_LAYERS = {"DRIVING_LINES": "road lane status station_m end_m sigma_m", 
 
 
 def add_road_map_layers(algorithm):
-    """The layers of the road map that an export takes."""
     algorithm.add_map_layer("LANES")
     for name in EXPORTED_LAYERS:
         algorithm.add_map_layer(name, optional=True)
@@ -164,7 +163,6 @@ ROAD_SETTINGS = settings_of(ROADS, "TOLERANCE")
 
 
 def add_road_choices(algorithm):
-    """How OpenDRIVE is written."""
     algorithm.add_input("choice", "VERSION", default="1.7", choices=("1.7", "1.8"))
     algorithm.add_settings(ROAD_SETTINGS)
     algorithm.add_input("choice", "TRAFFIC_SIDE", default="automatic", choices=("automatic", "right", "left"))
@@ -242,7 +240,6 @@ LANELET_SETTINGS = settings_of("products.export.lanelet_export:LaneletSettings",
 
 
 def add_lanelet_choices(algorithm):
-    """How Lanelet2 is written."""
     algorithm.add_settings(LANELET_SETTINGS)
     algorithm.add_input("choice", "LOCATION", default="urban", choices=("urban", "nonurban"))
     algorithm.add_input("flag", "LOCAL_COORDINATES", default=False)

@@ -204,7 +204,6 @@ def add_execution(algorithm):
 
 
 def execution_of(call):
-    """The ExecutionSettings of a call."""
     folder = call.file("WORK_FOLDER") if call.algorithm.parameter("WORK_FOLDER") is not None else ""
     return call.settings(EXECUTION_SETTINGS, work_folder=folder)
 

@@ -245,11 +245,9 @@ class Menu(QObject):
         WINDOW.end()
 
     def open_road_map(self, **values):
-        """The dialog of Road map, with some of its values."""
         self.open_algorithm("lanewright:roadmap", values)
 
     def open_algorithm(self, name, values):
-        """The dialog of an algorithm, with some of its values."""
         from qgis import processing
 
         self.dialog = processing.createAlgorithmDialog(name, values)

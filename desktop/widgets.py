@@ -161,7 +161,6 @@ def tell_result(iface, title: str, layers: Sequence[QgsMapLayer], warnings: Sequ
 
 
 def extent_of(layers: Iterable[QgsMapLayer], crs) -> QgsRectangle:
-    """Where layers lie, in a CRS."""
     whole = QgsRectangle()
     for layer in layers:
         if layer.isSpatial() and not layer.extent().isEmpty():

@@ -156,9 +156,7 @@ def write_dxf(lines: list[_DxfLine], path: str, crs: str = "", faces: np.ndarray
     crs : WKT, metric; the file has the units of the survey's own CRS. "" for metres
     faces : (F, 3, 3) m, corners of triangles, in the layer SURFACE
 
-    References
-    ----------
-    AutoCAD R12 DXF reference: pairs of a group code and a value, a line each.
+    Source: AutoCAD R12 DXF reference; pairs of a group code and a value, a line each.
     """
     units = as_in_file(crs)[1]
     layers = sorted({line.layer for line in lines} | ({"SURFACE"} if faces is not None else set()))
@@ -222,7 +220,6 @@ def _elements(plan):
 
 
 def surface_lines(model: SurfaceModel) -> list[_DxfLine]:
-    """The breaklines of a surface, by kind."""
     return [_DxfLine(f"BREAKLINE_{kind.upper()}", places + model.origin) for kind, places in model.followed]
 
 

@@ -172,12 +172,12 @@ ROAD_ATTRIBUTES = [Field("speed_kmh", float, "Speed limit (km/h)", needed=False)
                    Field("yields_to", str, "Lanes that go first, by lane_id", needed=False)]
 # the point of a signal is the middle of its lower edge, that of a pole its foot
 SIGNALS = [Field("kind", str, "Kind (traffic_light/sign/pole)"),
-           *(Field(name, type_, alias, needed=False) for name, type_, alias in (
-               ("country", str, "Country of its code, two letters"), ("code", str, "Code of the country's catalogue"),
-               ("subcode", str, "Second part of the code"), ("value", float, "Value"), ("unit", str, "Unit of the value"),
-               ("text", str, "Name or text"), ("lanes", str, "Lanes it holds for, by lane_id"),
-               ("heading", float, "Travel of the traffic it is for (°, clockwise from grid north)"),
-               ("height_m", float, "Height from its lower edge to its top (m)"), ("width_m", float, "Width (m)")))]
+           Field("country", str, "Country of its code, two letters", needed=False),
+           Field("code", str, "Code of the country's catalogue", needed=False), Field("subcode", str, "Second part of the code", needed=False),
+           Field("value", float, "Value", needed=False), Field("unit", str, "Unit of the value", needed=False),
+           Field("text", str, "Name or text", needed=False), Field("lanes", str, "Lanes it holds for, by lane_id", needed=False),
+           Field("heading", float, "Travel of the traffic it is for (°, clockwise from grid north)", needed=False),
+           Field("height_m", float, "Height from its lower edge to its top (m)", needed=False), Field("width_m", float, "Width (m)", needed=False)]
 RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/check/disabled)"),
              Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
              Field("dx_m", float, "Residual east (m)"), Field("dy_m", float, "Residual north (m)"),

@@ -80,7 +80,6 @@ class RememberedMessages(Progress):
 
     @property
     def warnings(self) -> list[str]:
-        """The texts of the warnings so far."""
         return [text for kind, text in self.messages if kind == "warn"]
 
     def info(self, text: str) -> None:

@@ -91,8 +91,6 @@ def face_at(points: np.ndarray, x: float, y: float, azimuth: float) -> Face | No
     points : (N, 4) x, y, z and intensity about the click at x, y, m
     azimuth : of the road there, degrees clockwise from north, which the section lies across; the curb may run otherwise
 
-    References
-    ----------
     .. [1] Sen (1968), Journal of the American Statistical Association 63, 1379-1389.
     """
     cloud = _Cloud(points[(np.abs(points[:, :2] - (x, y)) <= PICK.course).all(axis=1)], PICK.section_step)

@@ -170,10 +170,7 @@ def _rising(t, values):
 
 @dataclass(frozen=True)
 class Arc(Curve):
-    """A circular arc, or a straight line where `bend` is 0.
-
-    This form has no parameter that becomes infinite as the curve straightens.
-    """
+    """A circular arc, or a straight line where `bend` is 0. This form has no parameter that becomes infinite as the curve straightens."""
 
     x: float   # x, y: start, metres
     y: float

@@ -169,18 +169,14 @@ class Spline(TabulatedCurve):
 def fit_splines(lines: Sequence[tuple[np.ndarray, np.ndarray]], along: Sequence[np.ndarray | None] | None = None) -> list[CurveFit]:
     """Fit a penalised cubic B-spline to each line, from its first point to its last, by robust least squares.
 
-    The penalty is on the third derivative: arcs are not affected, only changes of
-    curvature are smoothed. The bandwidth is selected by BIC among those of FITS, with the effective number of parameters of a smoothing spline of
-    this order, L / (3 bandwidth) + 3 per coordinate [1]_; one coordinate is counted, since
-    only the deviation across the line is an observation.
+    The penalty is on the third derivative: arcs are not affected, only changes of curvature are smoothed. The bandwidth is selected by BIC among
+    those of FITS, with the effective number of parameters of a smoothing spline of this order, L / (3 bandwidth) + 3 per coordinate [1]_; one
+    coordinate is counted, since only the deviation across the line is an observation.
 
     lines : list of (x, y), each (N,) metres, N >= 4, ordered along the line; gaps are allowed
     along : for each line its (N,) rising distances, metres, such as stations, or None for the chord lengths of its points
 
-    References
-    ----------
-    .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
-       dimension is the integral of 1 / (1 + (w b)^6).
+    .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective dimension is the integral of 1 / (1 + (w b)^6).
     """
     selections = [_SplineSelection(*checked_points(x, y, 4), distances) for (x, y), distances in zip(lines, along or [None] * len(lines))]
     waiting = [line for line in selections if line.waiting]

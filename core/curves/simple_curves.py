@@ -29,9 +29,7 @@ def fit_circles(lines: Sequence[tuple[np.ndarray, np.ndarray]], max_misfit: floa
 
     lines, max_misfit : as of `fit_lines`, N >= 3
 
-    References
-    ----------
-    Taubin (1991), IEEE PAMI 13, 1115-1138; Chernov (2010), Circular and linear regression, ch. 5-7.
+    Source: Taubin (1991), IEEE PAMI 13, 1115-1138; Chernov (2010), Circular and linear regression, ch. 5-7.
     """
     return [_CircleProblem(*checked_points(x, y, 3)).fit(max_misfit) for x, y in lines]
 
@@ -98,8 +96,6 @@ class _StraightProblem(_CircleProblem):
 
 @dataclass(frozen=True)
 class Ellipse(TabulatedCurve):
-    """An elliptic arc."""
-
     x: float   # x, y: centre, metres
     y: float
     a: float   # a, b: semi-axes, metres
@@ -129,9 +125,7 @@ def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> Cur
 
     Raises RoadExtractionError if the points turn by less than 60 degrees or do not lie on an ellipse.
 
-    References
-    ----------
-    Halir and Flusser (1998), Numerically stable direct least squares fitting of ellipses.
+    Source: Halir and Flusser (1998), Numerically stable direct least squares fitting of ellipses.
     """
     problem = _EllipseProblem(*checked_points(x, y, 6))
     (cx, cy, a, b, tilt), outside, t = problem.fitted(max_misfit)

@@ -82,10 +82,7 @@ class LaneTrack:
         return {column.name: change(column.name, v) for column in fields(self) if isinstance(v := getattr(self, column.name), np.ndarray)}
 
     def without_jumps(self, s: np.ndarray) -> LaneTrack:
-        """The track with borders that are led over where they jump aside: a lane has no steps at its sides.
-
-        s : (K,) metres, grid stations
-        """
+        """The track with borders that are led over where they jump aside: a lane has no steps at its sides. s : (K,) metres, grid stations"""
         stations = s[self.first:self.last + 1]
         left, right = (led_over(stations, self.d + side * self.width / 2, rows) for side, rows in ((1, self.left), (-1, self.right)))
         return replace(self, d=(left + right) / 2, width=left - right)

@@ -19,10 +19,7 @@ from .weights import EXECUTION
 
 @dataclass(frozen=True)
 class ExecutionSettings:
-    """Who does the work.
-
-    workers : worker processes; 0 for threads of this process or, for a large survey, up to one process per processor core
-    """
+    """Who does the work. workers : worker processes; 0 for threads of this process or, for a large survey, up to one process per processor core"""
 
     workers: int = setting(0, 0, 256, "The number of workers", "", "for the automatic choice")
     work_folder: str = ""   # folder in which results are kept for later runs; "" for none

@@ -28,10 +28,7 @@ OURS = re.compile(r"(kept|points|store)-[0-9a-f]{32}[.0-9a-z]*")   # files of a 
 
 
 def work_folder(path: str) -> Path:
-    """A folder of the user's for what is kept, which is made where it is missing.
-
-    Raises RoadExtractionError if nothing can be written there.
-    """
+    """A folder of the user's for what is kept, which is made where it is missing. Raises RoadExtractionError if nothing can be written there."""
     folder = Path(path).absolute()
     try:
         folder.mkdir(exist_ok=True)

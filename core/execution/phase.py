@@ -154,10 +154,7 @@ class Executor:
 
 @cache
 def name_of(function: Any) -> str:
-    """"module:name" of a function or class of the package.
-
-    Raises TypeError if it is not a public one of a module of the package.
-    """
+    """"module:name" of a function or class of the package. Raises TypeError if it is not a public one of a module of the package."""
     package, _, module = function.__module__.partition(f"{PACKAGE}.")
     if package or not module or "." in function.__qualname__ or function.__qualname__.startswith("<"):
         raise TypeError(f"{function.__module__}.{function.__qualname__} cannot be sent: it is not named in a module of {PACKAGE}.")

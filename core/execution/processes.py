@@ -99,10 +99,7 @@ class WorkerProcesses(FolderExecutor):
 
 
 class _Worker:
-    """One process; used by one thread at a time.
-
-    phase : file of the phase that it works on; "" where it waits
-    """
+    """One process; used by one thread at a time. phase : file of the phase that it works on; "" where it waits"""
 
     def __init__(self, interpreter, folder):
         self.phase, self._words = "", tempfile.TemporaryFile(prefix="lanewright-")

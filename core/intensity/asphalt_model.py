@@ -151,10 +151,7 @@ class BinCounts:
 
 
 class IntensityHistograms:
-    """How many points have each level, by kind of distance, scanner and distance.
-
-    counts : (2, scanners, DISTANCE_BINS, INTENSITY_LEVELS) int64
-    """
+    """How many points have each level, by kind of distance, scanner and distance. counts : (2, scanners, DISTANCE_BINS, INTENSITY_LEVELS) int64"""
 
     def __init__(self, scanners: int):
         self.counts = np.zeros((2, scanners, DISTANCE_BINS, INTENSITY_LEVELS), np.int64)

@@ -100,8 +100,6 @@ def saturation_of(road_points: RoadPoints) -> _Saturation:
 
 @dataclass(frozen=True)
 class IntensitySettings:
-    """How intensity is corrected."""
-
     scale: str = "automatic"   # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
 
     def __post_init__(self) -> None:
@@ -196,9 +194,8 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
                       progress: Progress = Progress()) -> tuple[RoadPoints, _IntensityReport]:
     """Bring asphalt to one intensity at every distance and for every scanner.
 
-    The beams of a spinning scanner are equalised first, where they differ. In a first round the
-    intensities are counted by scanner and distance from the vehicle, left and right apart (of dense
-    roads in stripes across the road); the asphalt I0 of each bin is the median of what is not paint.
+    The beams of a spinning scanner are equalised first, where they differ. In a first round the intensities are counted by scanner and distance from
+    the vehicle, left and right apart (of dense roads in stripes across the road); the asphalt I0 of each bin is the median of what is not paint.
     In the second round every intensity I becomes::
 
         I * reference / I0      on a linear scale

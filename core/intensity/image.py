@@ -41,8 +41,6 @@ Extent = tuple[int, int, int, int]   # first and last column, first and last row
 
 @dataclass(frozen=True)
 class ImageSettings(Limited):
-    """How the image is interpolated."""
-
     cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")   # m; paint of 0.15 m survives at 0.04
     power: float = setting(2.0, 0.1, 10.0, "The power of the distance")   # of the distance
     beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")   # share of the weight that follows brightness; 0 is plain inverse distance
@@ -229,11 +227,9 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
         G = sum(w I) / sum(w),  w = (1 - beta + beta * b) / (distance + 1 mm)**power
         b = clip((I - P1) / (P99 - P1), 0, 1)
 
-    P1 and P99 are percentiles over 20 m of road. Where a cell holds six points or more, an evenly
-    spread share of at least three per cell stands for all of them on cells farther than the next.
-    The corrected intensity is used where there is one. Cells are multiples of the cell size in map
-    coordinates, so images of one place lie cell on cell. A cell without a point within the
-    radius has no data.
+    P1 and P99 are percentiles over 20 m of road. Where a cell holds six points or more, an evenly spread share of at least three per cell stands for
+    all of them on cells farther than the next. The corrected intensity is used where there is one. Cells are multiples of the cell size in map
+    coordinates, so images of one place lie cell on cell. A cell without a point within the radius has no data.
 
     path : of a float32 GeoTIFF that is written too, and appears when it is complete; None for none
     before : image of other points of the survey, whose tiles are taken over where they are the same; it is of no use any more
@@ -241,13 +237,8 @@ def make_intensity_image(road_points: RoadPoints, settings: ImageSettings = Imag
 
     Raises RoadExtractionError if there are no points, the image has too many tiles, or the file cannot be written.
 
-    Notes
-    -----
-    With `beta` above 0 bright edges grow by up to half a cell: take widths and
-    centre lines from the points.
+    With `beta` above 0 bright edges grow by up to half a cell: take widths and centre lines from the points.
 
-    References
-    ----------
     .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
     if pieces is None:

@@ -36,8 +36,7 @@ class OutlierSettings:
 
     neighbours : k, how many neighbours the mean distance is taken over
     std_ratio : m, a point is removed beyond mean + m * standard deviation
-    scope : "all" takes mean and deviation over the whole input (PCL),
-        "windows" per 20 m of station and 3 m of offset, and spares points whose
+    scope : "all" takes mean and deviation over the whole input (PCL), "windows" per 20 m of station and 3 m of offset, and spares points whose
         neighbours stand as far apart as they do: worn and far paint
     """
 
@@ -59,16 +58,10 @@ def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSetti
 
     Returns RoadPoints with the same columns and fewer points
 
-    Notes
-    -----
-    d_i is the mean distance to the k nearest neighbours besides the point
-    itself; the point goes if d_i > mu + m * sigma [1]_. In windows with fewer
-    than 30 points nothing is removed: their deviation is not reliable, and they are
-    the worn and the far paint. In windows with thousands of points mu and sigma are those of
-    an evenly spaced sample.
+    d_i is the mean distance to the k nearest neighbours besides the point itself; the point goes if d_i > mu + m * sigma [1]_. In windows with fewer
+    than 30 points nothing is removed: their deviation is not reliable, and they are the worn and the far paint. In windows with thousands of points
+    mu and sigma are those of an evenly spaced sample.
 
-    References
-    ----------
     .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
     """
     executor = points.store.readers(executor)
@@ -154,8 +147,6 @@ class Neighbours:
     units : (N, 3) int32 of 0.1 mm
     k : neighbours; fewer where there are no more
 
-    Notes
-    -----
     The tree is OpenCV's exact one, which works in float32. Points are integers of 0.1 mm counted from their
     least, so up to 1.6 km nothing is rounded, and beyond it a slower tree in float64 is taken. Of points at the very same place
     the tree holds no more than can be among the k nearest: a search would otherwise look at all of them, for each of them.

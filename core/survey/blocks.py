@@ -41,7 +41,6 @@ class _BlockSummary:
     excluded: int = 0
 
     def join(self, other: _BlockSummary) -> None:
-        """Add what other points contribute."""
         self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
         self.without_time += other.without_time
         self.excluded += other.excluded
@@ -432,7 +431,6 @@ class _TrackCounts:
         self.counts: CountsByCell = {}
 
     def join(self, others: CountsByCell) -> None:
-        """Add the counts of other points."""
         for key, rows in others.items():
             of_key = self.counts.setdefault(key, {})
             for cell, row in rows.items():

@@ -426,7 +426,6 @@ def table_of_database(layer: QgsVectorLayer) -> str:
 
 
 def _connection(name):
-    """A connection that QGIS keeps."""
     return QgsProviderRegistry.instance().providerMetadata(PROVIDER).createConnection(name)
 
 

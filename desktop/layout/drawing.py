@@ -451,7 +451,6 @@ def _profile(points):
 
 
 def _heights(crossings, surface):
-    """All heights of a section."""
     tops = [z + curb for _, z, _, curb in crossings if math.isfinite(curb)]
     return np.r_[[z for _, z, _, _ in crossings], tops, surface[np.isfinite(surface[:, 1]), 1]]
 

@@ -114,7 +114,6 @@ class Frame:
 
 
 def frame_of(choice: SheetSettings) -> Frame:
-    """The frame of the plan sheets."""
     long, short = PAPERS[choice.paper]
     return Frame(*((short, long) if choice.orientation == "portrait" else (long, short)), BAND.get(choice.paper, LARGER_BAND))
 
@@ -641,10 +640,7 @@ def _ground(path, progress) -> Iterator[np.ndarray]:
 
 
 def write_pdf(layout: QgsPrintLayout, path: str, progress: Progress, dpi: int = DPI) -> None:
-    """Write all pages, each of its own size; between two pages the user may cancel.
-
-    Raises RoadExtractionError where the file cannot be written.
-    """
+    """Write all pages, each of its own size; between two pages the user may cancel. Raises RoadExtractionError where the file cannot be written."""
     layout.renderContext().setDpi(dpi)
     layout.renderContext().setTextRenderFormat(Qgis.TextRenderFormat.AlwaysText)
     exporter, pages = QgsLayoutExporter(layout), layout.pageCollection()

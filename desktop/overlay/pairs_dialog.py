@@ -115,7 +115,6 @@ class PairsDialog(QDialog):
         self.add(QFileDialog.getOpenFileNames(self, tr("Images of a flight"), "", f"{tr('Images')} ({IMAGES});;{tr('All files')} (*.*)")[0])
 
     def add(self, paths: list[str]) -> None:
-        """Add images to the list."""
         listed = {image.path for image in self.images}
         for path in paths:
             if path not in listed:
@@ -193,7 +192,6 @@ class PairsDialog(QDialog):
             self._label()
 
     def accept_selected(self, accepted: bool) -> None:
-        """Accept or refuse the pairs that are selected."""
         ids = [item.data(_ID) for item in self.pairs.selectedItems()]
         if ids and self.current is not None:
             self.current.accept(ids, accepted)
@@ -426,7 +424,6 @@ class ImagePairs:
         return [] if layer is None else sorted(layer.getFeatures(), key=lambda row: int(row["point"]))
 
     def accept(self, ids: list[int], accepted: bool) -> None:
-        """Accept or refuse the pairs of some features."""
         layer = self.layer
         if layer is None:
             return

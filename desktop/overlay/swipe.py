@@ -105,7 +105,6 @@ class _Halves(QWidget):
         self.hide()
 
     def show_images(self, drawn: list[tuple[QImage, str]]) -> None:
-        """Show two images with their names."""
         self.drawn = drawn
         self.setGeometry(self.parent().rect())
         self.show()

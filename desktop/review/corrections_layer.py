@@ -250,7 +250,6 @@ def written_here(layer: QgsVectorLayer) -> list[int]:
 
 
 def note_written(layer: QgsVectorLayer, rows: Iterable[QgsFeature]) -> None:
-    """Note that rows were written in this project."""
     layer.setCustomProperty(WRITTEN, [*written_here(layer), *(row.id() for row in rows)])
 
 

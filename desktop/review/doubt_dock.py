@@ -212,7 +212,6 @@ class DoubtDock(QDockWidget):
         self.raise_()
 
     def show_steps(self, road_map: RoadMap) -> None:
-        """The steps of a road map."""
         self._take(road_map)
         self._fill()
         self.tabs.setCurrentWidget(self.steps)
@@ -618,7 +617,6 @@ class LineTool(QgsMapTool):
             self.finish()
 
     def add(self, point: QgsPointXY) -> None:
-        """One more vertex."""
         self.vertices.append(point)
         self._show(self.vertices)
 
@@ -627,7 +625,6 @@ class LineTool(QgsMapTool):
         self.drawn.emit(self.vertices)
 
     def clear(self) -> None:
-        """Forget what was drawn."""
         self.vertices = []
         self.band.reset(Qgis.GeometryType.Line)
 

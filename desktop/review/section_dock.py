@@ -89,7 +89,6 @@ class SectionDock(QDockWidget):
     # -- where ------------------------------------------------------------------------------------
 
     def show_at(self, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> None:
-        """The section through a place of the map."""
         self.said.clear()
         for road_map in road_maps(QgsProject.instance(), self.iface.activeLayer()):
             layers = road_map.vectors
@@ -104,7 +103,6 @@ class SectionDock(QDockWidget):
         self.view.show_section(np.empty((0, 3)), [], tr("No line of a road map lies near: click on a road that Lanewright mapped."))
 
     def step(self, metres: float) -> None:
-        """Go on along the road."""
         if self.section is None:
             return
         x, y = self.section.moved(metres)
@@ -154,7 +152,6 @@ class SectionDock(QDockWidget):
     # -- points -------------------------------------------------------------------------------------
 
     def _read(self, clouds):
-        """Read the points about the section in the background."""
         self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
         key = (clouds, self.section.x, self.section.y)
         self.task = with_points(tr("Points of a cross-section"), clouds, key[1:], AROUND, _PointsByPlace,

@@ -185,8 +185,6 @@ MAX_ERROR_DISTANCE = 0.25  # m; a result farther from the reference in a correct
 
 @dataclass(frozen=True)
 class BoundaryAccuracySettings:
-    """How boundaries are judged."""
-
     tolerances: tuple[float, ...] = (0.05, 0.10, 0.20)   # m
     tolerance: float = setting(0.10, 0.001, MAX_TOLERANCE, "The tolerance", "m")  # the one that intervals are drawn for
     interval: float = setting(2.0, 0.5, 100.0, "The interval", "m")  # along the trajectory or the reference
@@ -231,8 +229,6 @@ class _BoundaryIntervals:
 
 @dataclass(frozen=True)
 class BoundaryAccuracy:
-    """The accuracy of boundary lines."""
-
     by_side: dict[str, dict[float, _SideAccuracy]]   # side ("left", "right", "" unknown) to tolerance to _SideAccuracy
     total: dict[float, _SideAccuracy]   # tolerance to _SideAccuracy
     intervals: _BoundaryIntervals   # the table of all intervals

@@ -27,8 +27,6 @@ Burn = Callable[[tuple[float, float, float, float], tuple[int, int]], np.ndarray
 
 @dataclass(frozen=True)
 class MarkingAccuracySettings:
-    """How markings are judged."""
-
     cell_size: float = setting(0.04, 0.005, 1.0, "The cell size", "m")
     tolerances: tuple[int, ...] = (0, 1)  # cells by which the other side is widened
     tolerance: int = setting(1, 0, 10, "The tolerance", "cells")  # the one that objects are judged and drawn with
@@ -82,12 +80,10 @@ class MarkingAccuracy:
 
     @property
     def strict(self) -> Rates:
-        """Rates without tolerance."""
         return self.rates[0]
 
     @property
     def tolerant(self) -> Rates:
-        """Rates with the tolerance of the settings."""
         return self.rates[self.settings.tolerance]
 
     def outcomes(self) -> tuple[np.ndarray, np.ndarray]:

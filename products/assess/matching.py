@@ -104,7 +104,6 @@ class TrajectoryStationing:
         self.frame, self.corridor = frame, corridor
 
     def of_reference(self, points: LinePoints) -> Stations:
-        """Stations of points of the reference."""
         road, station, offset = self.frame.locate_nearest(*self.frame.to_local(*points.xy.T), corridor=self.corridor)
         return Stations(road, station, np.sign(np.nan_to_num(offset)).astype(int), offset)
 
@@ -131,7 +130,6 @@ class ReferenceStationing:
         self.length = shapely.length(np.asarray(lines, object)) if self.count else np.empty(0)
 
     def of_reference(self, points: LinePoints) -> Stations:
-        """Stations of points of the reference."""
         return Stations(points.line, points.station, self.side[points.line], np.full(len(points), np.nan))
 
     def of_result(self, points: LinePoints, nearest: NearestPoints) -> Stations:

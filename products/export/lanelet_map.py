@@ -55,10 +55,7 @@ class Lanelet:
 
 @dataclass
 class LaneletMap:
-    """A whole file.
-
-    ways, lanelets, others : by id; others are the remaining relations, such as regulatory elements
-    """
+    """A whole file. ways, lanelets, others : by id; others are the remaining relations, such as regulatory elements"""
 
     node_ids: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))   # (N,) int in order of the file
     degrees: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))   # (N, 2) longitude, latitude

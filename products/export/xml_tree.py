@@ -41,7 +41,6 @@ class XmlElement:
         self.children: Sequence[XmlElement] = ()   # most have none: a list is made for the first
 
     def append(self, child: XmlElement) -> None:
-        """Add a child."""
         if isinstance(self.children, list):
             self.children.append(child)
         else:
@@ -60,14 +59,10 @@ class XmlElement:
         return element
 
     def get(self, name: str, missing: str = "") -> str:
-        """An attribute."""
         return self.attributes.get(name, missing)
 
     def number(self, name: str, missing: float | None = None) -> float:
-        """A finite number of an attribute.
-
-        Raises RoadExtractionError if it is missing and has no default, or is no number of a map.
-        """
+        """A finite number of an attribute. Raises RoadExtractionError if it is missing and has no default, or is no number of a map."""
         text = self.attributes.get(name)
         if text is None:
             if missing is None:

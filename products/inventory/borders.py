@@ -66,10 +66,7 @@ class _Pieces:
 
 
 class RoadBorders:
-    """Borders of carriageway and lanes, station by station.
-
-    country : whose lanes tell two lines that bound a lane
-    """
+    """Borders of carriageway and lanes, station by station. country : whose lanes tell two lines that bound a lane"""
 
     def __init__(self, layers: BorderLayers, frame: RoadFrame, country: Country):
         self.frame, self.country = frame, country
@@ -80,7 +77,6 @@ class RoadBorders:
 
     @property
     def given(self) -> bool:
-        """Whether any layer was given."""
         return any(layer is not None for layer in (self.edges, self.lines, self.driving, self.lane_borders))
 
     def outer(self, road: int, s: float) -> tuple[float, float]:

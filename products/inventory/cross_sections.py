@@ -54,8 +54,6 @@ class _StripMeasures:
 
 @dataclass(frozen=True)
 class _RoadSection:
-    """One section."""
-
     road: int   # road, station: where
     station: float
     heading: float   # tangent of the angle between the carriageway and the road's reference line, by which widths across are shortened
@@ -66,8 +64,6 @@ class _RoadSection:
 
 @dataclass
 class RoadSections:
-    """All sections of a survey."""
-
     sections: list[_RoadSection]   # in order of road and station
     errors: dict[int, HeightErrors]   # {road: HeightErrors} between passes and scanners
     frame: RoadFrame   # frame, crs, settings: what they were made with

@@ -143,10 +143,7 @@ class Overlap:
 
 @dataclass
 class HeightErrors:
-    """Errors of every group in every window.
-
-    step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)
-    """
+    """Errors of every group in every window. step, tilt : (G, W) m and m/m: error = step + tilt * (d - offset of the vehicle)"""
 
     windows: np.ndarray = field(default_factory=lambda: np.empty(0))   # (W,) m, ascending, middles of the windows
     groups: dict[tuple[int, int], int] = field(default_factory=dict)   # {(pass number, scanner): row}
@@ -291,9 +288,7 @@ def rut_depths(d: np.ndarray, profiles: np.ndarray, lane: tuple[float, float], c
     sigma : (I,) m, of the height of one cell
     Returns (2, I) m, >= 0, of the right and the left wheel path, seen along the road; NaN where the profile has gaps
 
-    References
-    ----------
-    Straight edge: EN 13036-7. Largest of n normal deviates: sigma sqrt(2 ln n), an upper bound of its expectation.
+    Sources: EN 13036-7 (straight edge). Largest of n normal deviates: sigma sqrt(2 ln n), an upper bound of its expectation.
     """
     count = int(round(EDGE_LENGTH / CROSS_CELL)) + 1
     low = max(lane[0] - WHEEL_REACH, carriageway[0])

@@ -106,7 +106,6 @@ def _reduced_copy(path):
 
 
 def proposed_points_report(proposal: Proposal) -> str:
-    """The report of a Proposal as HTML."""
     return html_page("proposed_points", proposal=proposal, notes=proposal.notes, cut_outs=_pairs_picture(proposal),
                   rival=None if proposal.rival is None else np.hypot(proposal.rival.dx, proposal.rival.dy))
 

@@ -149,7 +149,6 @@ class Chart:
         self.parts.append(("level", pixel, colour, label if free else "", 0))
 
     def svg(self) -> str:
-        """The chart as an SVG element."""
         columns, rows = ([(float(pixel_of(value)), f"{value:.10g}" if abs(value) > 1e-12 else "0") for value in ticks(low, high, count)]
                          for pixel_of, low, high, count in ((self._x, self.x0, self.x1, 10), (self._y, self.y0, self.y1, 5)))
         return html_page("chart", chart=self, columns=columns, rows=rows, width=CHART_WIDTH, left=LEFT_MARGIN, right=PLOT_END, top=TOP_MARGIN,

@@ -23,7 +23,6 @@ LEAST_CHART_TOP = 0.02  # m
 
 
 def inspection_report(inspection: Inspection) -> str:
-    """The report of an Inspection as HTML."""
     first, track, profile = (inspection.time_span or (0.0,))[0], inspection.trajectory, None
     # seconds beyond a week are no seconds of a week, whatever the header says of them
     start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9) if first > timedelta(weeks=1).total_seconds() else None
@@ -73,7 +72,6 @@ def _histogram(counts, low, high):
 
 
 def estimated_trajectory_report(estimate: EstimatedTrajectory) -> str:
-    """The report on an EstimatedTrajectory as HTML."""
     place, height = ((np.median(sigma), sigma.max()) for sigma in (estimate.sigma, estimate.sigma_height))
     return html_page("estimated_trajectory", estimate=estimate, notes=estimate.notes, way=WAYS[estimate.method], place=place, height=height,
                   scanners=_scanners(estimate), chart="" if estimate.adjusted is None else _chart_of_sigmas(estimate))

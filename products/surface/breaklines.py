@@ -34,8 +34,6 @@ CROWN_SLICES = 9        # slices whose profiles are averaged for a crown
 
 @dataclass(frozen=True)
 class Breakline:
-    """A breakline."""
-
     kind: str   # one of KINDS
     road: int
     places: np.ndarray   # (N, 3) local m

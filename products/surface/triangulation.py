@@ -25,10 +25,8 @@ class Triangulation:
     vertices : (V, 3) m, no two at one place in plan; segments : (S, 2) int of them; area : polygon that holds the middles of those that are kept
     faces : (F, 3) int, vertices of the triangles, counter-clockwise from above
 
-    References
-    ----------
-    Anglada (1997), An improved incremental algorithm for constructing restricted Delaunay triangulations, Computers & Graphics 21, 215-223. The
-    Delaunay triangulation is Qhull's.
+    Source: Anglada (1997), An improved incremental algorithm for constructing restricted Delaunay triangulations, Computers & Graphics 21, 215-223.
+    The Delaunay triangulation is Qhull's.
     """
 
     def __init__(self, vertices: np.ndarray, segments: np.ndarray, area: shapely.Geometry | None = None):
@@ -183,9 +181,7 @@ def thinned(cells: np.ndarray, judged: np.ndarray, fixed: np.ndarray, segments: 
     area : polygon that is covered
     tolerance : m, root mean square of the misses of the cells that are judged
 
-    References
-    ----------
-    Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
+    Source: Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields, CMU-CS-95-181: algorithm II, in rounds.
     """
     vertices, last, limit = fixed, 2 * tolerance, np.inf
     shapely.prepare(area)

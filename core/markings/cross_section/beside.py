@@ -67,9 +67,9 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
         *near_by, driven_width = (around.means(values, w.alike_within, np.isfinite(driven) * places.sums(values, w.alike_within))
                                   for values in shown_there)
         share = np.where(np.isfinite(driven_width), (share + w.alike_beside * np.array(near_by)) / (1 + w.alike_beside), share)
-        told = np.isfinite(driven_width) & np.isnan(driven)
-        usual_there = np.where(np.isnan(between) & told, driven_width, usual_there)
-        nats, width, spread = _readings(room, driven, sigma, usual_there, np.where(told, w.like_lines, like), share, w)
+        undriven = np.isfinite(driven_width) & np.isnan(driven)
+        usual_there = np.where(np.isnan(between) & undriven, driven_width, usual_there)
+        nats, width, spread = _readings(room, driven, sigma, usual_there, np.where(undriven, w.like_lines, like), share, w)
     chosen = _chosen(places, room, lined, across, nats, width, spread, w)
     end = m + step
     free = np.where(np.isnan(room) & SURFACE_END[c.made_of[i, end]], np.abs(np.where(side == 0, c.right[i, end], c.left[i, end]) - line), room)

@@ -1,9 +1,8 @@
 """Where the curb is occluded: the ground and the tall things that the scanner saw beside the road.
 
-A missing curb counts as occluded only where no ground was measured at its place and
-something tall stands between it and the vehicle, or where the road before it returned
-nothing, as water does, and the ground behind it is raised. Where ground was seen there,
-the road is open: a driveway, a junction.
+A missing curb counts as occluded only where no ground was measured at its place and something tall stands between it and the vehicle, or where the
+road before it returned nothing, as water does, and the ground behind it is raised. Where ground was seen there, the road is open: a driveway, a
+junction.
 """
 
 from __future__ import annotations

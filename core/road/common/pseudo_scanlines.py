@@ -4,10 +4,9 @@ The road is cut into profiles: slices across it, one profile width long, at fixe
 spacing wide. Within a cell the points are separated into layers where the height jumps, so that branches, cars and ghost points lie in layers of
 their own. The lowest layer gives the cell's principal point, and the principal points of a profile are its pseudo scan-line.
 
-References
-----------
-Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section 3.3. The thesis takes the highest point of the lowest layer. Here
-it is a high quantile, less what noise alone would give: the highest of many noisy points would lift a dense road above its sparser neighbours.
+Source: Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section 3.3. The thesis takes the highest point of the lowest
+layer. Here it is a high quantile, less what noise alone would give: the highest of many noisy points would lift a dense road above its sparser
+neighbours.
 """
 
 from __future__ import annotations

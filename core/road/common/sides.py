@@ -22,10 +22,7 @@ SIDE_SIGNS = {"left": 1, "right": -1}   # derived: side -> sign of its offsets
 
 
 class OutermostTrack:
-    """Outward offset of the outermost driven track on one side.
-
-    sign : of the side's offsets
-    """
+    """Outward offset of the outermost driven track on one side. sign : of the side's offsets"""
 
     def __init__(self, frame: RoadFrame, road: int, sign: int):
         self.passes, self.sign = frame.passes_of(road), sign

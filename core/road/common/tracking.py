@@ -1,9 +1,8 @@
 """Steps linked to chains along the road, and the sequence of chains that is the curb.
 
-A single step may be anything; a curb continues. Steps of neighbouring profiles are
-linked where offset and height continue, and the links make chains. Among chains side
-by side the selection along the road weighs the length that they cover against lateral
-jumps, with a weak preference for what is near the vehicle.
+A single step may be anything; a curb continues. Steps of neighbouring profiles are linked where offset and height continue, and the links make
+chains. Among chains side by side the selection along the road weighs the length that they cover against lateral jumps, with a weak preference for
+what is near the vehicle.
 """
 
 from __future__ import annotations
@@ -59,8 +58,7 @@ class StepChain:
 def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     """Link steps of neighbouring profiles.
 
-    Each step is linked with the one ahead that continues it best, if that one has
-    no better step behind, so chains do not branch.
+    Each step is linked with the one ahead that continues it best, if that one has no better step behind, so chains do not branch.
 
     steps : M CurbSteps of one side of one road
     profile_width : m of road per profile
@@ -82,10 +80,7 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
 
 
 def _best_partner(steps, width, direction):
-    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits.
-
-    The steps are sorted by profile, then outward.
-    """
+    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits. The steps are sorted by profile, then outward."""
     profile, u, h, s = steps.profile, steps.u, steps.h, steps.s
     count = len(u)
     span = u.max() - u.min() + 1000.0
@@ -500,8 +495,7 @@ def _is_curb(piece, off, across, height):
 class GapLine:
     """A polynomial in plan across a gap.
 
-    before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within CURBS.line_fit_length
-        of it are used
+    before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within CURBS.line_fit_length of it are used
     max_degree : greatest degree; 2 is an even bend
 
     miss : m, greatest distance of the places that were used from the line

@@ -188,10 +188,7 @@ def _profiles(t, u, z, turns, bends, zero, cells):
 
 
 def island_ends(ground: GroundRaster, steps: PlanSteps) -> PlanSteps:
-    """Steps of the ends of islands beyond both of their sides, where none was seen.
-
-    steps : PlanSteps, among them those of the sides
-    """
+    """Steps of the ends of islands beyond both of their sides, where none was seen. steps : PlanSteps, among them those of the sides"""
     chains = [chain.steps for chain in join_chains(link_plan_steps(steps), steps) if not chain.closed and len(chain.steps) > 2]
     sides = LineEnds.of([(steps.x[chain], steps.y[chain], steps.h[chain]) for chain in chains], RETURN.line_direction_length)
     tail, head = (ends[k] for ends, k in zip((sides.tails, sides.heads), np.indices((len(chains), len(chains))).reshape(2, -1)))

@@ -112,10 +112,7 @@ def main_runs(main: Mapping[str, np.ndarray], line: Road) -> list[tuple]:
 
 
 class KnownPlaces:
-    """Places along main curbs, where no other curb is looked for.
-
-    places : (N, 2) local metres
-    """
+    """Places along main curbs, where no other curb is looked for. places : (N, 2) local metres"""
 
     def __init__(self, places: np.ndarray):
         self._trees = [cKDTree(places)]

@@ -4,9 +4,7 @@ Every scanline is searched outward from the vehicle for a rise of at least `min_
 on road and is followed by raised ground. A rise that is not on the neighbouring scanlines too is no candidate. The
 vertices around the candidates are then resampled for the planes of `corners`.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps b and g.
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps b and g.
 """
 
 from __future__ import annotations
@@ -128,10 +126,7 @@ def _rising(low, span, least):
 
 
 def gap_fill_rows(interval: float) -> int:
-    """Scanlines on either side from which the gaps of a scanline are filled.
-
-    interval : m between section planes
-    """
+    """Scanlines on either side from which the gaps of a scanline are filled. interval : m between section planes"""
     return max(int(round(SCANLINE.gap_fill_reach / interval)), 1)
 
 

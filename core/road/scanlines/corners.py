@@ -4,9 +4,7 @@ The samples around every candidate are classified as road, face and raised groun
 road. A plane is fitted to each class by RANSAC and least squares. Where the three planes are those of a curb, the corners
 are the intersections of the face with the two others in the section plane.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps c to f. The angles of the
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps c to f. The angles of the
 paper are those between the planes and the vertical; here they are those between the normals and the vertical.
 """
 
@@ -254,10 +252,7 @@ def _scatter(owner, values, selected, count):
 
 
 def plane_fit_rows(interval: float, settings: ScanlineBoundarySettings) -> int:
-    """Scanlines on either side of a candidate from which its planes are fitted.
-
-    interval : m between section planes
-    """
+    """Scanlines on either side of a candidate from which its planes are fitted. interval : m between section planes"""
     return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
 
 

@@ -3,9 +3,7 @@
 Every section of the road is searched for each side, pass and scanner alone. Corners that agree are merged. The others
 remain until corners are linked along the road, by the same rules as in the method of profiles.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1.
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1.
 """
 
 from __future__ import annotations

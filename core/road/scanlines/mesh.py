@@ -5,9 +5,7 @@ next line between which it lies by the phase of the mirror. Section planes are i
 triangles: the side from the point to the place of the same phase on the next line. The intersections in one plane
 are then connected to polylines in the order of the phase. The mesh exists for one window at a time.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 """
 
 from __future__ import annotations
@@ -184,10 +182,7 @@ def _ribs_on_surface(lines, station, longest, direction, point, ahead, place):
 
 
 def slanting_edges(lines: ScannerLines, mirror: MirrorPhase, interval: float) -> Ribs:
-    """Edges along scan lines that run far along the road, so that a plane may pass between their ends and no rib.
-
-    interval : m between planes
-    """
+    """Edges along scan lines that run far along the road, so that a plane may pass between their ends and no rib. interval : m between planes"""
     station = lines.s / interval
     point = np.flatnonzero((np.diff(np.ceil(station)) != 0) & lines.joined[:-1])   # most have no plane between them and the next point
     least = SCANLINE.slant_share * mirror.spacing * lines.driven[lines.line.take(point)]

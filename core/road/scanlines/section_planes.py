@@ -4,9 +4,7 @@ A plane perpendicular to the reference line of the road has one station in the r
 intersected at the stations of the planes, and neighbouring intersections are connected. Planes do not intersect each
 other within the road, because the frame limits the offset by the radius of the bend.
 
-References
-----------
-The paper on normalized scanlines (ISPRS Archives, 2020), section 2.
+Source: the paper on normalized scanlines (ISPRS Archives, 2020), section 2.
 """
 
 from __future__ import annotations

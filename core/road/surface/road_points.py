@@ -43,10 +43,7 @@ def _squares(*points):
 
 
 def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: float) -> Carriageway:
-    """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more.
-
-    section_length : m
-    """
+    """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more. section_length : m"""
     cells, count = carriageway.cells, len(carriageway.height)
     margin = SURFACE.rows_beside * SURFACE.row_length
     low, high = stretch[1] * section_length - margin, stretch[2] * section_length + margin
@@ -116,8 +113,6 @@ def points_on_road(points: Points, carriageway: Carriageway) -> _OnRoad:
 
     Returns _OnRoad
 
-    Notes
-    -----
     Single precision is enough: lengths are in units of 0.1 mm and count from a corner of each cell, so that the rounding
     is below the resolution of the coordinates. The result does not depend on the window.
     """

@@ -51,7 +51,6 @@ class Poses:
 
     @property
     def scanners(self) -> int:
-        """The number of scanners."""
         return len(self.rate)
 
     def at(self, interval: np.ndarray, share: np.ndarray) -> np.ndarray:

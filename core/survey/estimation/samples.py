@@ -43,7 +43,6 @@ class Samples:
 
     @property
     def scanners(self) -> int:
-        """The number of scanners."""
         numbers = self.scanner[self.scanner != UNKNOWN_SCANNER]
         return int(numbers.max()) + 1 if len(numbers) else 0
 

@@ -190,10 +190,7 @@ class IntensitySource:
 
 
 def intensity_source_of(samples: Sequence[FileSample], wanted: str) -> tuple[IntensitySource, str]:
-    """How the intensities of all files are to be read, and what the user should know of it.
-
-    wanted : one of INTENSITY_SOURCES
-    """
+    """How the intensities of all files are to be read, and what the user should know of it. wanted : one of INTENSITY_SOURCES"""
     if wanted == "rgb":
         return IntensitySource("rgb"), ""
     values = np.concatenate([sample.intensity for sample in samples])

@@ -1,12 +1,9 @@
 """The scan lattice of a survey: the scan line of every point and its place on the line, from LAS fields alone.
 
-The angle of a point about the trajectory turns with the scanner's mirror. The frequency at which angle and
-time fit best is found in short windows; then the phase is tracked along the pass, which allows for a varying
-rotation rate, tunnels, clipped clouds and missing points. Where the angles do not show the rotation, the
-gap that the sky leaves in every turn may still show in the times.
+The angle of a point about the trajectory turns with the scanner's mirror. The frequency at which angle and time fit best is found in short windows;
+then the phase is tracked along the pass, which allows for a varying rotation rate, tunnels, clipped clouds and missing points. Where the angles do
+not show the rotation, the gap that the sky leaves in every turn may still show in the times.
 
-References
-----------
 .. [1] Kohira and Masuda (2017), ISPRS Annals: points as pixels by time and scanner parameters.
 """
 
@@ -46,10 +43,7 @@ class ScanLattice:
 
 
 def find_lattice(survey: Any, rotation_frequency: float = 0.0, progress: Progress = Progress()) -> ScanLattice:
-    """The scan lattice of every pass and scanner of a Survey.
-
-    rotation_frequency : Hz, turns of the mirror per second; 0 = from the data
-    """
+    """The scan lattice of every pass and scanner of a Survey. rotation_frequency : Hz, turns of the mirror per second; 0 = from the data"""
     return in_step([lattice_of(survey, rotation_frequency, progress)], survey.executor, progress)[0]
 
 

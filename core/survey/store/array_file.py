@@ -56,10 +56,7 @@ class ArrayFile:
         return first
 
     def get(self, place: int, count: int, dtype: Any) -> np.ndarray:
-        """(N,) read-only values from a byte on, which stay in the file until they are used.
-
-        Raises OSError where the file ends before.
-        """
+        """(N,) read-only values from a byte on, which stay in the file until they are used. Raises OSError where the file ends before."""
         end = place + count * np.dtype(dtype).itemsize
         with self._lock:
             if self._map is None or end > len(self._map):

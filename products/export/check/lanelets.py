@@ -1,8 +1,6 @@
 """The check of a Lanelet2 map: what is there, what is shared, what is driven where, and tags that the format does not know.
 
-References
-----------
-Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryElementTagging; Autoware's extensions of them.
+Source: Lanelet2, documents LaneletAndAreaTagging, LinestringTagging and RegulatoryElementTagging; Autoware's extensions of them.
 """
 
 from __future__ import annotations

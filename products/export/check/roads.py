@@ -1,8 +1,6 @@
 """The check of an OpenDRIVE map: numbers first, then what is linked to what, and what the file states that the format does not have.
 
-References
-----------
-ASAM OpenDRIVE 1.7 and 1.8, the tables of attributes and the rules at the end of each section.
+Source: ASAM OpenDRIVE 1.7 and 1.8, the tables of attributes and the rules at the end of each section.
 """
 
 from __future__ import annotations

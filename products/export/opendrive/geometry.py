@@ -1,8 +1,6 @@
 """The mathematics of OpenDRIVE: piecewise cubics, and the reference line of a road from lines, arcs, spirals and polynomials.
 
-References
-----------
-ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
+Source: ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
 """
 
 from __future__ import annotations
@@ -276,10 +274,7 @@ def fit_cubics(bundles: Sequence[LineBundle]) -> list[list[Cubics]]:
 
 
 class _Division:
-    """A bundle and how it is divided into pieces.
-
-    knots : (K,) metres; straight : (K - 1,) whether the piece leads straight from place to place
-    """
+    """A bundle and how it is divided into pieces. knots : (K,) metres; straight : (K - 1,) whether the piece leads straight from place to place"""
 
     def __init__(self, number, given):
         self.number, self.given = number, given

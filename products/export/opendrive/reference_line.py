@@ -48,8 +48,6 @@ def fit_reference(points: np.ndarray, tolerance: float, ends: tuple[float | None
     ends : radians, headings that it has at its start and end, None for any
     Returns PlanView from the first point to the last one; None where even short elements miss the points
 
-    References
-    ----------
     .. [1] Bertolazzi and Frego (2015), G1 fitting with clothoids, Mathematical Methods in the Applied Sciences 38(5), 881-897.
     """
     return side_by_side([reference_steps(points, tolerance, ends)])[0]

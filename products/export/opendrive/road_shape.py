@@ -98,10 +98,7 @@ def _guided(strip, centres):
 
 
 def _square_ends(plan, strip, shown, near):
-    """(the reference line with what makes its ends square, s and t of the vertices from it).
-
-    near : for each slice (n,) metres along the road
-    """
+    """(the reference line with what makes its ends square, s and t of the vertices from it). near : for each slice (n,) metres along the road"""
     for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
         s_all, t_all = [], []
         for part, along in zip(shown, near):

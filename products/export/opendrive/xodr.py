@@ -200,8 +200,7 @@ def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress =
     """Lanes, painted borders and edges of a map; `crs` is the WKT of its coordinates, "" where unknown.
 
     Every section of a lane is a piece, whose lane_id is "road.lane.section"; a section in which a speed limit changes is cut there. Lanes of roads in
-    junctions are connectors.
-    Sidewalks are no lanes of ours: where one begins there is an edge.
+    junctions are connectors. Sidewalks are no lanes of ours: where one begins there is an edge.
     """
     whole = replace(whole, roads=[road.cut_where_speeds_change() for road in whole.roads])
     rows: list[dict[str, Any]] = []

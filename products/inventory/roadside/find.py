@@ -195,8 +195,6 @@ class SideEdges:
 
 @dataclass(frozen=True)
 class SideLine:
-    """A line beside the road."""
-
     kind: str   # guard_rail, barrier, wall, fence, hedge or gutter
     chain: Chain
     foot: float   # m, lower end of what is seen of it above the ground

@@ -55,7 +55,6 @@ class Uprights(Rows):
 
     @staticmethod
     def none() -> Uprights:
-        """No uprights."""
         empty = np.empty(0)
         return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, TOP_BINS)), *(empty,) * 4, np.empty(0, bool), empty)
 

@@ -142,8 +142,6 @@ _BORDER = 0.3        # m from where the intensity image ends
 def _paint_corners(paint: np.ndarray, known: np.ndarray, cell: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Places where paint has edges in two directions, spread over the image.
 
-    References
-    ----------
     .. [1] Shi and Tomasi (1994), Good features to track, CVPR: the smaller eigenvalue of the structure tensor.
     """
     if not known.any():
