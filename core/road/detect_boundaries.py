@@ -196,8 +196,7 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
                 distances = distances[np.isfinite(distances)]
                 if len(distances):
                     agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
-            with np.errstate(invalid="ignore"):
-                differing = difference > BOUNDARY.min_reported_difference
+            differing = difference > BOUNDARY.min_reported_difference
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue
