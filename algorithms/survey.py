@@ -97,7 +97,7 @@ def _percent(share):
 
 
 SAMPLE_SETTINGS = settings_of("simulator.survey:SampleSettings", "SCENE LENGTH SEED SPEED* PULSE_RATE* ROTATION_RATE* RADIUS*",
-    SPEED=dict(field="speed_kmh"), SCENE=dict(choices=(
+    SPEED=dict(field="speed_kmh"), SCENE=dict(words=(
         "street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine", "crossing",
         "roundabout", "outskirts", "cycle-lanes")))
 
