@@ -240,7 +240,7 @@ class STRANDS:
     min_points_per_place: int = 3   # points that a place must have to count, where there are enough such places
     min_guided_gap: float = 4.0   # m: in a longer gap the curve is guided parallel to the other lines
     guide_spacing: float = 2.0   # m between guiding places
-    kept_distance: float = 0.1   # m within which a line keeps its distance from what it runs along, as `max_stray_offset` of its own pieces
+    kept_distance: float = 0.1   # m within which a line keeps its distance from what it runs along
     line_height_smoothing: float = 3.0   # m
     fitted_together: int = 8   # lines of a task at most: one takes some 20 ms
     max_distance_to_line: float = 0.15   # m between a marking and the line along it
@@ -258,13 +258,14 @@ class LINKS:
     end_window: float = 6.0   # m of a strand's end that say where it goes
     min_paint_beside_gap: float = 3.0   # m that either side of a long gap must have
     max_strand_overlap: float = 0.6   # m that two strands of one line may overlap
-    stray_window: float = 20.0   # m before and after a strand that say where it should lie
     max_stray_length: float = 4.0   # m: longer strands make their own case
-    max_stray_offset: float = 0.10   # m across
+    max_miss: float = 0.30   # m across that two lines may miss each other by over the longest gap; half of it where they touch,
+    max_long_miss: float = 0.25   # m, and by which over any longer one
     double_line_spacing: tuple[float, float] = (0.19, 0.50)   # m between the middles of the two lines of a double line
     twin_reach: float = 2.0   # m before and after a place at which the other line of a double line is looked for
     middle_share: tuple[float, float] = (0.25, 0.75)   # of the way from one line of a double to the other: its middle
     cost_without_link: float = 2.01   # the worst possible link costs 1 for its mismatch and 1 for its gap
+    cost_of_stray: float = 0.5   # of a strand left out: one of 2 m in a gap of 9 m is left out where it lies 0.11 m aside
 
 
 @table
@@ -414,8 +415,8 @@ class NOISY:
 class PHOTOGRAPHS:
     """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
 
-    The nats lie between logistic regressions over pieces of four and of two simulated streets in the brightness of photographs with shadows of trees,
-    houses and cars, seams, crossfall of light, displaced images and the colour of cars beside them; other streets and other light were kept aside.
+    The nats are near a logistic regression over pieces of four simulated streets in the brightness of photographs with shadows of trees, houses and
+    cars, seams, crossfall of light, displaced images and the colour of cars beside them; three other streets were kept aside.
     """
 
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
@@ -436,8 +437,9 @@ class PHOTOGRAPHS:
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
     # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
-    # breadth; of nearness of the rim; of nearness to paint and not to asphalt. Without any of them a piece may be either
-    nats: tuple[float, ...] = -3.0, -2.5, 0.9, -7.0, 4.4
+    # breadth; of nearness of the rim; of how much brighter the sun nearby is, as most flecks of it in the shade are dimmer; of nearness to paint
+    # and not to asphalt. Without any of them a piece may be either
+    nats: tuple[float, ...] = -2.0, -3.0, 0.8, -6.5, -6.0, 4.6
 
 
 @table

@@ -63,12 +63,12 @@ def _line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reac
 
 
 def _misses(pairs: Sequence[tuple[int, int]], ends: list[_End], starts: list[_End], lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside,
-            limit: np.ndarray) -> np.ndarray:
+            limit: np.ndarray | float) -> np.ndarray:
     """(P,) metres across by which the ends of lines miss the starts of the next, at the middle of the gap: the least of several views.
 
     Lines go on as they pointed, or parallel to the others, since a short dash hardly knows its own slope; those of another carriageway may lead
     away. Or both keep their distance from one edge of the road: at their tips, or where they are painted, as along a taper on which they bend. That
-    last view is of gaps alone. No line leads across an island: there, and above the `limit`, (P,) m, it is inf.
+    last view is of gaps alone. No line leads across an island: there, and above the `limit`, m, it is inf.
 
     pairs : number of the line that ends, and of that which begins
     """
@@ -93,20 +93,22 @@ def _misses(pairs: Sequence[tuple[int, int]], ends: list[_End], starts: list[_En
     return np.where(np.isin(np.arange(len(miss)), near[~edges.bars(s[near], d[near])]), miss, np.inf)
 
 
-def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
-    """Lines linked over gaps up to `max_gap`, m, each end once, at the least cost of all links together.
-
-    `allowed` : m across at the longest gap; half of it where lines touch.
-    """
+def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float) -> list[LinkedLine]:
+    """Lines linked over gaps up to `max_gap`, m, each end once, at the least cost of all links together."""
     starts, ends = (_line_ends(lines, trend, at_start) for at_start in (True, False))
     twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = [(a, b) for a, b in _facing(starts, ends, -LINKS.max_strand_overlap, max_gap)
              if lines[b].last > lines[a].last and not _between_twins(twin_ends[a], twin_starts[b], ends[a], starts[b])
              and (abs(ends[a].slope - starts[b].slope) <= TREND.max_line_slope or min(ends[a].reach, starts[b].reach) <= 3.0)]
-    gap = np.array([max(starts[b].s - ends[a].s, 0.0) for a, b in pairs])
-    limit = allowed * (0.5 + 0.5 * gap / max(max_gap, 1e-6)) + np.array([ends[a].open + starts[b].open for a, b in pairs])
+    gap, limit = _gaps_and_limits(pairs, ends, starts, max_gap)
     cost = (_misses(pairs, ends, starts, lines, trend, edges, limit) / limit) ** 2 + gap / max_gap
     return _joined(lines, assigned_links([(cost[k], *pairs[k]) for k in np.flatnonzero(np.isfinite(cost)).tolist()]))
+
+
+def _gaps_and_limits(pairs, ends, starts, max_gap):
+    """(2, P) gaps along the road between the ends and starts of pairs, and m across that these may miss each other by."""
+    gap = np.array([max(starts[b].s - ends[a].s, 0.0) for a, b in pairs])
+    return gap, LINKS.max_miss * (0.5 + 0.5 * gap / max_gap) + np.array([ends[a].open + starts[b].open for a, b in pairs])
 
 
 def _facing(starts, ends, least, most):
@@ -184,7 +186,7 @@ def _joined(lines, follows):
 
 
 def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
-                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
+                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool]) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, m, where something carries over.
 
     Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
@@ -194,8 +196,8 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
         facing, neighbours = _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge), lines_beside(lines)
         possible = [(a, b) for a, b in facing if min(lines[a].painted, lines[b].painted) >= LINKS.min_paint_beside_gap]
-        misses = _misses(possible, ends, starts, lines, trend, edges, np.full(len(possible), allowed))
-        pairs = [((miss / allowed) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
+        misses = _misses(possible, ends, starts, lines, trend, edges, LINKS.max_long_miss)
+        pairs = [((miss / LINKS.max_long_miss) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
                  if np.isfinite(miss) and (same_dash_pattern(lines[a], lines[b])
                                            or _runs_beside(lines, neighbours, (a, b), ends[a], starts[b], trend))]
         if not pairs:
@@ -204,42 +206,23 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         lines = _joined(lines, assigned_links(pairs))
 
 
-def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside) -> LinkedLine:
-    """The line less short strands off the course of the paint before and after them, be that with the other lines, on the road or along an edge."""
-    if len(line.strands) < 3:
-        return line
-    s, d, _, weight = line.places
-    owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
-    order = np.argsort(s, kind="stable")
-    s, d, weight, owner = s[order], d[order], weight[order], owner[order]
-    kept = []
-    for k, strand in enumerate(line.strands):
-        middle = (strand.first + strand.last) / 2
-        window = np.arange(*np.searchsorted(s, [middle - LINKS.stray_window, middle + LINKS.stray_window]))
-        other_rows, strand_rows = window[owner[window] != k], window[owner[window] == k]
-        on_both_sides = (s[other_rows] < middle).any() and (s[other_rows] > middle).any()
-        if strand.length > LINKS.max_stray_length and strand.length > 0.1 * line.painted or not on_both_sides:
-            kept.append(strand)
-            continue
-        edge = edges.between(*((float(s[j]), float(d[j])) for j in window[[0, -1]]))
-        courses: list[Callable[[np.ndarray], np.ndarray]] = [trend.at, np.zeros_like, *([] if edge is None else [edge])]
-        for course in courses:
-            expected = _robust_level(s[other_rows] - middle, d[other_rows] - course(s[other_rows]), np.minimum(weight[other_rows], 10.0))
-            if abs(median(d[strand_rows] - course(s[strand_rows])) - expected) <= LINKS.max_stray_offset:
-                kept.append(strand)
-                break
-    return LinkedLine(kept)
-
-
-def _robust_level(s, level, weight):
-    """Value at 0 of a straight line through (s, level), strays counting little."""
-    base = weight
-    design = np.c_[np.ones(len(s)), s / LINKS.stray_window]
-    for _ in range(6):
-        root = np.sqrt(weight)
-        coefficients = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]
-        weight = base / np.sqrt(1.0 + ((level - design @ coefficients) / 0.03) ** 2)
-    return coefficients[0]
+def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float) -> LinkedLine:
+    """The line less short strands beside its course: of all ways along it, that whose links, as of `link_lines`, and strands left out cost least."""
+    strands = [LinkedLine([strand]) for strand in line.strands]
+    starts, ends = (_line_ends(strands, trend, at_start) for at_start in (True, False))
+    pairs = sorted(_facing(starts, ends, -LINKS.max_strand_overlap, max_bridge), key=lambda pair: pair[1])
+    gap, limit = _gaps_and_limits(pairs, ends, starts, max_gap)
+    cost = (_misses(pairs, ends, starts, strands, trend, edges, np.inf) / limit) ** 2 + gap / max_gap
+    without = [LINKS.cost_of_stray if strand.length <= LINKS.max_stray_length else np.inf for strand in line.strands]
+    least, before = np.append(0.0, np.full(len(strands) - 1, np.inf)), {}
+    for (a, b), of_link in zip(pairs, cost.tolist()):
+        of_way = least[a] + of_link + sum(without[a + 1:b])
+        if of_way < least[b]:
+            least[b], before[b] = of_way, a
+    way = [len(strands) - 1]
+    while way[-1] in before:
+        way.append(before[way[-1]])
+    return LinkedLine([line.strands[k] for k in reversed(way)]) if way[-1] == 0 else line
 
 
 def _runs_beside(lines, beside, pair, before, after, trend):

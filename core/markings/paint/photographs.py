@@ -36,14 +36,14 @@ def bright_spots(brightness: np.ndarray,
     brightest = cv2.dilate(cv2.blur(np.nan_to_num(z), (3, 3)), np.ones((PHOTOGRAPHS.half_maximum_cells,) * 2, np.uint8))
     threshold = np.clip(brightest / 2, ASPHALT.lowest, ASPHALT.highest)
     bright = z - np.maximum.reduce([gutter_level(z, rim) for rim in rims]) > threshold
-    light = _light(np.log(np.maximum(brightness, np.float32(1))), np.log(np.maximum(ground, np.float32(1))), bright)
-    return z, bright, partial(_are_paint, z, brightness / spread, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
+    sunnier, light = _light(np.log(np.maximum(brightness, np.float32(1))), np.log(np.maximum(ground, np.float32(1))), bright)
+    return z, bright, partial(_are_paint, z, brightness / spread, sunnier, light, bright, rims[0].distance), ground + (threshold - 0.5) * spread
 
 
 def _light(brightness, ground, bright):
-    """(rows, columns) from -1 for asphalt to 1 for paint, be they in the sun or in the shade.
+    """(rows, columns) logarithms by which asphalt in the sun nearby is brighter, and from -1 for asphalt to 1 for paint, in the sun or the shade.
 
-    Squares of distances from these, in the usual step from asphalt to paint: light adds to logarithms of brightness, on paint and asphalt alike.
+    The latter by squares of distances in the usual step from asphalt to paint: light adds to logarithms of brightness, on paint and asphalt alike.
     Where asphalt has two levels and not one that scatters, the brighter one is that of the sun, taken from the metres around.
 
     brightness, ground : (rows, columns) float32 logarithms; bright : (rows, columns) bool
@@ -60,11 +60,11 @@ def _light(brightness, ground, bright):
     step = (PHOTOGRAPHS.paint_step * PHOTOGRAPHS.usual_cells + sure.sum()) / (PHOTOGRAPHS.usual_cells + len(sure))
     in_sun, in_shade = above_sun / step, (brightness - ground) / step
     asphalt, paint = (np.minimum(of_sun**2, of_shade**2) for of_sun, of_shade in ((in_sun, in_shade), (np.minimum(in_sun - 1, 0), in_shade - 1)))
-    return np.clip(asphalt - paint, -1, 1)
+    return np.maximum(-above_sun, 0), np.clip(asphalt - paint, -1, 1)
 
 
-def _are_paint(z, above, light, bright, rim, labels):
-    """(pieces,) bool, whether pieces are paint, by a logistic regression, and not sunlit, one-sided, round, or at the rim.
+def _are_paint(z, above, sunnier, light, bright, rim, labels):
+    """(pieces,) bool, whether pieces are paint, by a logistic regression, and not sunlit, dimmer than sun nearby, one-sided, round, or at the rim.
 
     labels : as in `clear_pieces`; rim : (rows, columns) m to it; above : (rows, columns) brightness in spreads; the others as of `bright_spots`
     """
@@ -80,7 +80,7 @@ def _are_paint(z, above, light, bright, rim, labels):
                 np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0),
                 np.minimum(np.log(along / across) / 2, PHOTOGRAPHS.most_elongated),
                 np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach),
-                ndimage.mean(np.nan_to_num(light), np.where(bright, labels, 0), numbers))
+                *(ndimage.mean(np.nan_to_num(of), np.where(bright, labels, 0), numbers) for of in (sunnier, light)))
     return np.transpose(features) @ PHOTOGRAPHS.nats > 0.0
 
 
