@@ -259,7 +259,8 @@ class LINKS:
     min_paint_beside_gap: float = 3.0   # m that either side of a long gap must have
     max_strand_overlap: float = 0.6   # m that two strands of one line may overlap
     max_stray_length: float = 4.0   # m: longer strands make their own case
-    max_miss: float = 0.30   # m across that two lines may miss each other by over the longest gap; half of it where they touch
+    max_miss: float = 0.30   # m across that two lines may miss each other by over the longest gap; half of it where they touch,
+    max_long_miss: float = 0.25   # m, and by which over any longer one
     double_line_spacing: tuple[float, float] = (0.19, 0.50)   # m between the middles of the two lines of a double line
     twin_reach: float = 2.0   # m before and after a place at which the other line of a double line is looked for
     middle_share: tuple[float, float] = (0.25, 0.75)   # of the way from one line of a double to the other: its middle
