@@ -58,8 +58,11 @@ class Stripe:
 Crossing = tuple[np.ndarray, Comb]   # rows of the spots about a crossing, and the clearest comb of its windows
 
 
-def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs: Sequence[Comb | None]) -> list[Crossing]:
-    """The crossings that windows of spots, given by their rows, show by what `comb_of_window` finds in each."""
+def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs: Sequence[Comb | None]) -> list[tuple[np.ndarray, list[Crossing]]]:
+    """The crossings that windows of spots, given by their rows, show by what `comb_of_window` finds in each.
+
+    Those about which the same spots lie come together: the rows of their spots, and the crossings, whose rows are among these.
+    """
     combs = [comb for comb in window_combs if comb is not None]
     rows = [members for members, comb in zip(windows, window_combs) if comb is not None]
     crossings: list[Crossing] = []
@@ -67,21 +70,25 @@ def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs:
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
         crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
-    return crossings
+    held, spot = np.unique(np.concatenate([np.empty(0, np.int32), *(members for members, _ in crossings)]), return_inverse=True)
+    of, count = np.repeat(np.arange(len(crossings)), [len(members) for members, _ in crossings]), len(crossings) + len(held)
+    result = []
+    for _, group in members_of(linked_groups(of, len(crossings) + spot, count)[:len(crossings)]):
+        sharing = [crossings[k] for k in group]
+        together = np.unique(np.concatenate([members for members, _ in sharing]))
+        result.append((together, [(np.searchsorted(together, members), comb) for members, comb in sharing]))
+    return result
 
 
-def stripes_apart(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], stripe_lists: Sequence[list[Stripe]]) -> list[Stripe]:
-    """The stripes of all crossings of a road, each spot on one of them; `stripe_lists` : what `stripes_of_crossing` finds of each."""
+def stripes_of_crossings(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing]) -> list[Stripe]:
+    """The stripes of some crossings, each spot on one of them: a crossing has what those before it left. `places`, `way` : as of one crossing."""
     result, unused = [], np.ones(len(places), bool)
-    for (members, best), stripes in zip(crossings, stripe_lists):
-        if not unused[members].all():
-            # one before it has taken some of its spots
-            check_cancelled()
-            members = members[unused[members]]
-            stripes = stripes_of_crossing(places[members], way[members], best)
-        stripes = [replace(stripe, spots=members[stripe.spots]) for stripe in stripes]
-        unused[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
-        result += stripes
+    for about, comb in crossings:
+        check_cancelled()
+        members = about[unused[about]]
+        for stripe in stripes_of_crossing(places[members], way[members], comb):
+            result.append(replace(stripe, spots=members[stripe.spots]))
+            unused[result[-1].spots] = False
     return result
 
 
