@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -249,7 +250,7 @@ def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), median(lines[key][0].d), key))
     by_line = [sorted(lines[key], key=lambda p: (p.s[0], p.s[-1])) for key in order]
-    pieces, line = [p for of_line in by_line for p in of_line], np.repeat(np.arange(len(order)), [len(of_line) for of_line in by_line])
+    pieces, line = [*chain.from_iterable(by_line)], np.repeat(np.arange(len(order)), [*map(len, by_line)])
     ends, names = np.array([(p.s[0], p.s[-1]) for p in pieces]), sorted({p.pattern for p in pieces})
     s = STATION_STEP * np.arange(np.ceil(ends[:, 0].min() / STATION_STEP), np.floor(ends[:, 1].max() / STATION_STEP) + 1)
     # pieces of one line touch: a grid station between their ends belongs to the line too
@@ -257,23 +258,28 @@ def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     begins = np.flatnonzero(np.diff(line, prepend=-1))
     first = np.minimum.reduceat(begin, begins)
     start = np.append(0, np.cumsum(np.maximum(np.maximum.reduceat(end, begins) - first, 0)))
+    columns = _columns_on_grid(pieces, np.array(order)[line], names, s, begin, end, (start[:-1] - first)[line], int(start[-1]))
+    rows = [_GridRow(longest.kind, longest.pattern, at, {name: values[a:b] for name, values in columns.items()})
+            for longest, at, a, b in zip(map(_longest, by_line), first.tolist(), start[:-1].tolist(), start[1:].tolist())]
+    return _GridLines(s, rows, names)
+
+
+def _longest(pieces):
+    return max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
+
+
+def _columns_on_grid(pieces, number, names, s, begin, end, shift, size):
+    """{name: (size,)} of the columns of rows one after the other: a piece stands at the stations from `begin` to before `end`, `shift` farther."""
+    columns = {name: np.full(size, missing) for name, missing in MISSING.items()}
     of, station = expand_ranges(begin, end)
-    place = station + (start[:-1] - first)[line[of]]
-    columns = {name: np.full(start[-1], missing) for name, missing in MISSING.items()}
-    stretches = [s[a:b] for a, b in zip(begin.tolist(), end.tolist())]
-    of_piece = dict(drawn=np.array([names.index(p.pattern) for p in pieces]), number=np.array(order)[line], width=np.array([p.width for p in pieces]))
-    for name, values in of_piece.items():
-        columns[name][place] = values[of]
+    place, stretches = station + shift[of], [s[a:b] for a, b in zip(begin.tolist(), end.tolist())]
+    for name, of_pieces in (("drawn", map(names.index, (p.pattern for p in pieces))), ("number", number), ("width", (p.width for p in pieces))):
+        columns[name][place] = np.array([*of_pieces])[of]
     for name in ("d", "z"):
         # to 0.1 mm, as points are: paint that changes somewhere moves a fitted line by less everywhere
         columns[name][place] = np.round(np.concatenate([np.interp(at, p.s, getattr(p, name)) for at, p in zip(stretches, pieces)]), 4)
     columns["seen"][place[np.array([p.seen for p in pieces])[of]]] = True
-    rows = []
-    for k, of_line in enumerate(by_line):
-        longest = max(of_line, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
-        rows.append(_GridRow(longest.kind, longest.pattern, int(first[k]), {
-            name: values[start[k]:start[k + 1]] for name, values in columns.items()}))
-    return _GridLines(s, rows, names)
+    return columns
 
 
 def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int]]]:

@@ -125,8 +125,7 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
     neighbours, result = lines_beside(lines), np.zeros(len(lines))
-    levels = [d - trend.at(s) for s, d, *_ in (line.places for line in lines)]
-    lowest, highest = (np.array([side(level) for level in levels]) for side in (np.min, np.max))
+    lowest, highest = _level_ranges(lines, trend)
     for k, tip in enumerate(tips):
         beside = neighbours.between(inner[k], inner[k])
         within = np.maximum(lowest[beside] - tip.d, tip.d - highest[beside]) <= LINKS.double_line_spacing[1] + 1e-9   # the others lie farther away
@@ -137,6 +136,12 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
                 if LINKS.double_line_spacing[0] <= abs(offset) <= LINKS.double_line_spacing[1]:
                     result[k] = offset
     return result
+
+
+def _level_ranges(lines, trend):
+    """(2, N) m, the least and the greatest offset of each line, less drift."""
+    levels = [line.places[1] - trend.at(line.places[0]) for line in lines]
+    return np.array([(level.min(), level.max()) for level in levels]).reshape(-1, 2).T
 
 
 def _between_twins(twin_before, twin_after, before, after):

@@ -70,13 +70,17 @@ def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs:
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
         crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
-    held, spot = np.unique(np.concatenate([np.empty(0, np.int32), *(members for members, _ in crossings)]), return_inverse=True)
-    of, count = np.repeat(np.arange(len(crossings)), [len(members) for members, _ in crossings]), len(crossings) + len(held)
-    result = []
-    for _, group in members_of(linked_groups(of, len(crossings) + spot, count)[:len(crossings)]):
-        sharing = [crossings[k] for k in group]
-        together = np.unique(np.concatenate([members for members, _ in sharing]))
-        result.append((together, [(np.searchsorted(together, members), comb) for members, comb in sharing]))
+    return _sharing_spots(crossings, len(spots.places))
+
+
+def _sharing_spots(crossings, spots):
+    """What `crossings_of` gives of crossings about so many spots."""
+    number = len(crossings)
+    of, about = np.repeat(np.arange(number), [len(members) for members, _ in crossings]), [members for members, _ in crossings]
+    groups, result = linked_groups(of, number + np.concatenate([np.empty(0, int), *about]), number + spots)[:number], []
+    for _, group in members_of(groups):
+        rows = np.unique(np.concatenate([about[k] for k in group]))
+        result.append((rows, [(np.searchsorted(rows, about[k]), crossings[k][1]) for k in group]))
     return result
 
 
