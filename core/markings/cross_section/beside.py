@@ -59,15 +59,17 @@ def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w
     nats, width, spread = _readings(room, driven, sigma, usual_there, like, share, w)
     known = np.isfinite(room) & np.isfinite(driven) & np.isfinite(nats).any(axis=0)
     if known.any():
-        # lanes nobody drove in are like those beside curbs that were driven on the same road near by
-        fits, driven_width = np.full((len(share), len(i)), np.nan), np.where(known, width[nats.argmin(axis=0), np.arange(len(i))], np.nan)
+        # what is left over is alike beside other curbs that were driven on the same road near by, and so is the width of lanes that nobody drove
         probable = np.exp(nats[:, known].min(axis=0) - nats[:, known])
-        fits[:, known] = (probable / probable.sum(axis=0))[:-2].reshape(2, len(share), -1).sum(axis=0)
-        *near_by, driven_width = (around.means(values, w.alike_within) for values in (*fits, driven_width))
+        probable /= probable.sum(axis=0)
+        shown_there = np.full((len(share) + 1, len(i)), np.nan)
+        shown_there[:, known] = *probable[:-2].reshape(2, len(share), -1).sum(axis=0), (probable * width[:, known]).sum(axis=0)
+        *near_by, driven_width = (around.means(values, w.alike_within, np.isfinite(driven) * places.sums(values, w.alike_within))
+                                  for values in shown_there)
         share = np.where(np.isfinite(driven_width), (share + w.alike_beside * np.array(near_by)) / (1 + w.alike_beside), share)
-        usual_there = np.where(np.isfinite(between), between, np.where(np.isfinite(driven_width), driven_width, usual_there))
-        alike = _readings(room, driven, sigma, usual_there, np.full(len(i), w.like_lines), share, w)
-        nats, width, spread = (np.where(np.isnan(driven), *values) for values in zip(alike, (nats, width, spread)))
+        undriven = np.isfinite(driven_width) & np.isnan(driven)
+        usual_there = np.where(np.isnan(between) & undriven, driven_width, usual_there)
+        nats, width, spread = _readings(room, driven, sigma, usual_there, np.where(undriven, w.like_lines, like), share, w)
     chosen = _chosen(places, room, lined, across, nats, width, spread, w)
     end = m + step
     free = np.where(np.isnan(room) & SURFACE_END[c.made_of[i, end]], np.abs(np.where(side == 0, c.right[i, end], c.left[i, end]) - line), room)
@@ -83,19 +85,22 @@ class _Along:
         self.far = station.max(initial=0.0) + 1.0
         self.row, self.station = row[self.order], station[self.order]
 
-    def means(self, values, reach):
-        """(N,) means of what is not NaN of values, over `reach` m either way along the same row; NaN where there is none.
+    def means(self, values, reach, less=0):
+        """(N,) means of what is not NaN of values, over `reach` m either way along the same row, less some `sums`; NaN where there is none."""
+        total, length = self.sums(values, reach) - less
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return total / length
 
-        They are summed in millionths, as whole numbers: those are exact, so that a mean does not depend on what lies farther along the road.
-        """
+    def sums(self, values, reach):
+        """(2, N) int, the same times their length, and that length, in millionths: as whole numbers they do not depend on what lies farther along."""
         place = self.row * (self.far + 2 * reach) + self.station
         low, high = np.searchsorted(place, place - reach), np.searchsorted(place, place + reach, side="right")
         weight = np.where(np.isfinite(values), self.length, 0.0)[self.order]
         parts = weight * np.where(np.isfinite(values), values, 0.0)[self.order], weight
-        sums = [np.r_[0, np.cumsum(np.rint(1e6 * part).astype(np.int64))] for part in parts]
-        result = np.full(len(values), np.nan)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            result[self.order] = (sums[0][high] - sums[0][low]) / (sums[1][high] - sums[1][low])
+        result = np.empty((2, len(values)), np.int64)
+        for of_part, part in zip(result, parts):
+            total = np.r_[0, np.cumsum(np.rint(1e6 * part).astype(np.int64))]
+            of_part[self.order] = total[high] - total[low]
         return result
 
 
@@ -163,7 +168,7 @@ def _chosen(places, room, lined, across, nats, width, spread, w):
     off = np.abs(between[:, None] - width)
     right = sum(value * (share * (ndtr((reach - off) / spread) - ndtr((-reach - off) / spread))).sum(axis=1)
                 for reach, value in ((2 * SAME_LANE, 1.0), (2 * SAME_LANE / 3, w.nearer)))
-    first = between[right.argmax(axis=0), columns]
+    first = between[np.argmax([places.means(part, w.repeats) for part in right], axis=0), columns]
     apart = np.where(np.abs(width - first) > 2 * SAME_LANE, nats, np.inf)
     second = np.argmin(apart, axis=0)
     known = np.isfinite(apart[second, columns])

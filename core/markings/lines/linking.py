@@ -192,7 +192,7 @@ def _joined(lines, follows):
 
 
 def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
-                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
+                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool]) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, m, where something carries over.
 
     Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
@@ -202,8 +202,8 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
         facing, neighbours = _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge), lines_beside(lines)
         possible = [(a, b) for a, b in facing if min(lines[a].painted, lines[b].painted) >= LINKS.min_paint_beside_gap]
-        misses = _misses(possible, ends, starts, lines, trend, edges, allowed)
-        pairs = [((miss / allowed) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
+        misses = _misses(possible, ends, starts, lines, trend, edges, LINKS.max_long_miss)
+        pairs = [((miss / LINKS.max_long_miss) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
                  if np.isfinite(miss) and (same_dash_pattern(lines[a], lines[b])
                                            or _runs_beside(lines, neighbours, (a, b), ends[a], starts[b], trend))]
         if not pairs:

@@ -111,6 +111,14 @@ def test_where_one_drives_between_the_middle_of_the_room_and_that_of_a_usual_lan
     assert sorted(readings(street, edges=curbs(street, 4.1, -4.1))) == pytest.approx([-1.9, 1.9], abs=0.06)
 
 
+def test_two_drives_that_keep_away_from_both_curbs_show_that_something_is_left_over_beside_them():
+    """Each of them alone may have kept to one side of a lane that has all the room."""
+    street = Street(vehicle=-1.75, again=(1.75,)).paint(0.0, kind="centre")
+    found = readings(street, edges=curbs(street, 3.8, -3.8))
+    assert sorted(found) == pytest.approx([-1.75, 1.75], abs=0.08)
+    assert all(row["other"] is None for row in found.values())
+
+
 def test_a_row_of_parked_cars_between_lane_and_curb_is_no_second_reading_where_one_drove_beside_it():
     street = Street(vehicle=-1.75, again=(1.75,)).paint(0.0, kind="centre")
     assert all(row["other"] is None for row in readings(street, edges=curbs(street, 5.7, -5.7)).values())
