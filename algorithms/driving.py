@@ -174,7 +174,8 @@ class RoadMap(Algorithm):
             call.layer(name, layer if layer is not None else Features(MAP_LAYERS[name].geometry, MAP_LAYERS[name].schema, crs=road_map.crs))
         if call.wants("PASSES"):
             call.layer("PASSES", core.survey.frame.placement.passes_to_features(road_map.frame, road_map.crs))
-        call.layer("CURB_POINTS", road_map.layer("curb_points"))
+        if call.wants("CURB_POINTS"):
+            call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
             call.text("REPORT", products.report.road_map.road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],

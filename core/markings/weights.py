@@ -246,9 +246,6 @@ class STRANDS:
     max_distance_to_line: float = 0.15   # m between a marking and the line along it
     paint_beside_piece: float = 2.0   # m of station before and after a piece whose paint counts for its offset
     # Roughness of paint about fitted lines.
-    max_paint_distance: float = 0.25   # m from a fitted line within which a point is its paint
-    min_width_ratio: float = 0.03   # of the variances along the second and the first principal direction: below, neighbours lie in a line
-    max_quadric_condition: float = 1e3   # condition number of the normal equations of the quadric
 
 
 @table
