@@ -71,7 +71,7 @@ class CURBS:
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
     thin_width: float = 2.0   # m across in which points are densest: beside the track
-    thin_density: float = 320.0   # points per m² of ground there, below which more of the road is looked at together: whole surveys had 348 and more
+    thin_density: float = 640.0   # points per m² of ground there, and at a step, below which several profiles show more than one
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
@@ -173,8 +173,6 @@ class PROFILE:
     min_raised_height_share: float = 0.65   # share of the least height that these cells must show
     # wider profiles
     wider_profiles: tuple[int, ...] = 1, 3, 6   # so many more profiles on either side are looked at together
-    least_behind: int = 4   # points behind a step in those, which tell the slope of the ground
-    least_sharpness: float = 0.75   # share of its height that must lie right at its face
     # averaged profiles
     averaging_length: float = 1.25   # m of road that are averaged
     skew_step: float = 0.125   # m outward per m along between the directions tried: 4 cm at the ends of the average
@@ -594,6 +592,7 @@ class SURFACE:
     farthest_ahead: float = 25.0   # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away, too
     ground_reach: float = 0.7   # m above or below the road under the vehicle, and
     ground_reach_per_metre: float = 0.12   # more per m of offset, within which ground is looked for
+    thin_density: float = 320.0   # points per m² beside the track, below which rows are looked at together: whole surveys had 348 and more
     rows_about_thin: int = 10   # rows of profiles before a window, and behind it, that must be thin as well for its own to be looked at together
     # levels of scanners
     level_width: float = 1.0   # m across the road in which the levels of views differ by one factor

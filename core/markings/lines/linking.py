@@ -124,18 +124,24 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
-    neighbours = lines_beside(lines)
-    result = np.zeros(len(lines))
+    neighbours, result = lines_beside(lines), np.zeros(len(lines))
+    lowest, highest = _level_ranges(lines, trend)
     for k, tip in enumerate(tips):
-        for j in neighbours.between(inner[k], inner[k]).tolist():
-            if j == k:
-                continue
+        beside = neighbours.between(inner[k], inner[k])
+        within = np.maximum(lowest[beside] - tip.d, tip.d - highest[beside]) <= LINKS.double_line_spacing[1] + 1e-9   # the others lie farther away
+        for j in beside[within & (beside != k)].tolist():
             s, d = lines[j].near(inner[k] - LINKS.twin_reach, inner[k] + LINKS.twin_reach)
             if len(s):
                 offset = median(d - trend.at(s)) - tip.d
                 if LINKS.double_line_spacing[0] <= abs(offset) <= LINKS.double_line_spacing[1]:
                     result[k] = offset
     return result
+
+
+def _level_ranges(lines, trend):
+    """(2, N) m, the least and the greatest offset of each line, less drift."""
+    levels = [line.places[1] - trend.at(line.places[0]) for line in lines]
+    return np.array([(level.min(), level.max()) for level in levels]).reshape(-1, 2).T
 
 
 def _between_twins(twin_before, twin_after, before, after):
@@ -186,7 +192,7 @@ def _joined(lines, follows):
 
 
 def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float,
-                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
+                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool]) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, m, where something carries over.
 
     Either both sides have one dash pattern and the gap is a whole multiple of it (`same_dash_pattern(before, after)`), or another line runs on
@@ -196,8 +202,8 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         ends, starts = (_line_ends(lines, trend, at_start, 3 * LINKS.end_window) for at_start in (False, True))
         facing, neighbours = _facing(starts, ends, max_gap - LINKS.max_strand_overlap, max_bridge), lines_beside(lines)
         possible = [(a, b) for a, b in facing if min(lines[a].painted, lines[b].painted) >= LINKS.min_paint_beside_gap]
-        misses = _misses(possible, ends, starts, lines, trend, edges, allowed)
-        pairs = [((miss / allowed) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
+        misses = _misses(possible, ends, starts, lines, trend, edges, LINKS.max_long_miss)
+        pairs = [((miss / LINKS.max_long_miss) ** 2 + (starts[b].s - ends[a].s) / max_bridge, a, b) for (a, b), miss in zip(possible, misses.tolist())
                  if np.isfinite(miss) and (same_dash_pattern(lines[a], lines[b])
                                            or _runs_beside(lines, neighbours, (a, b), ends[a], starts[b], trend))]
         if not pairs:

@@ -44,12 +44,12 @@ class CurbSteps(Rows):
 
 
 def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float,
-                    least_sharpness: float = -np.inf) -> CurbSteps:
+                    least_evidence: float = -np.inf) -> CurbSteps:
     """The step at each rising cell, where it proves to be one.
 
     rows, cells : (M,) profiles and cells in which the ground rises
     min_height, max_height : m, of a step
-    least_sharpness : share of a step that must lie right at its face: few points on the face do not tell it from a ramp
+    least_evidence : nats of `_step_evidence` that a step must have where few points show it
 
     Returns CurbSteps, at most M, in the order of the cells
     """
@@ -62,7 +62,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
     if not ground.all():
         ground = np.flatnonzero(ground)
         owner, index = owner.take(ground), index.take(ground)
-    best = _measure(lines, rows, cells, owner, index, min_height, max_height)
+    best, everywhere = _measure(lines, rows, cells, owner, index, min_height, max_height), (owner, index)
     # positions that drifted between one view and the next blur a face that each view shows sharply: what is no
     # step in all points together may be one in the points seen from one side of the vehicle
     ahead = lines.along.take(lines.point.take(index)) > 0
@@ -80,9 +80,35 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
             better &= view["good"]
             for name, values in view.items():
                 best[name][remeasured[better]] = values[better]
-    good = best["good"] & (best["sharpness"] >= least_sharpness)
+    good = best["good"]
+    if least_evidence > 0.0:
+        owner, index = everywhere
+        point = lines.point.take(index)
+        s = lines.s.take(point) - best["s"].take(owner)
+        good = good & (_step_evidence(owner, lines.u.take(point) - best["u"].take(owner) - best["skew"].take(owner) * s, s, lines.h.take(index),
+                                     lines.noise[rows]) >= least_evidence)
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
-                     **{name: values[good] for name, values in best.items() if name not in ("good", "likely", "sharpness")})
+                     **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
+
+
+def _step_evidence(owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray) -> np.ndarray:
+    """(M,) nats by which a step explains the heights about each of M places better than ground that bends there or ramps up.
+
+    Each is added to a plane that goes on across the place; what it leaves counts in units of that and the scanner's noise.
+
+    owner : (N,) place of every point
+    u, s, h : (N,) m, offset outward from the face, along its direction, distance along, and height
+    scanner_noise : (M,) m
+    """
+    kept = np.flatnonzero((np.abs(u) > CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin) & (u < CURBS.behind_length))
+    owner, u, s, h = (v.take(kept) for v in (owner, u, s, h))
+    terms = h, np.ones(len(h)), u, s, u > 0.0, np.maximum(u, 0.0), np.clip(0.5 + 0.5 * u / CURBS.face_search_half_width, 0.0, 1.0)
+    moments = np.array([[np.bincount(owner, one * other, len(scanner_noise)) for other in terms] for one in terms])
+    n = np.maximum(moments[1, 1], 1.0)
+    for k in (1, 2, 3):   # what the plane explains is taken out of the others
+        moments = moments - moments[:, k, None] * moments[k] / np.maximum(moments[k, k], 1e-9)
+    squares = np.maximum(moments[0, 0] - moments[0, 4:] ** 2 / np.maximum(np.einsum("kkm->km", moments)[4:], 1e-9), 0.0) + n * scanner_noise ** 2
+    return 0.5 * np.maximum(n - 4.0, 0.0) * np.log(squares[1:].min(0) / squares[0])
 
 
 def _measure(lines, rows, cells, owner, index, min_height, max_height):
@@ -186,7 +212,7 @@ class StepPatches:
 
     def _faces(self, rise, level, slope, grade, noise, n_road, height, n_behind, stays):
         """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
-        owner, u, s, count, rise_around = self.owner, self.u, self.s, self.count, rise
+        owner, u, s, count = self.owner, self.u, self.s, self.count
         scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(CURBS.face_lower_share * height, 2 * scatter), 0.45 * height)
@@ -208,16 +234,11 @@ class StepPatches:
         share = np.maximum((upper - lower) / np.maximum(height, 1e-3), CURBS.min_face_share)
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
         run = np.where(n_face < 3, 0.0, np.maximum(run - CURBS.face_noise_sigmas * scatter, 0.0))
-        beside = self.u - corner.take(self.owner)
-        with np.errstate(invalid="ignore"):
-            below, above = (np.bincount(self.owner, rise_around * part, count) / np.bincount(self.owner, part, count)
-                            for part in (beside < -CURBS.face_margin, beside > CURBS.face_margin))
-        sharpness = np.nan_to_num((above - below) / height, nan=1.0)
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
                 & (n_face >= 1) & (run <= CURBS.max_face_width))
         return dict(s=station, u=corner + self.skew * station, h=level + slope * corner + grade * station, skew=skew, height=height, run=run,
-                    noise=noise, support=n_road + n_face, behind=n_behind, sharpness=sharpness, good=good)
+                    noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""

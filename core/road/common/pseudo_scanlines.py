@@ -137,12 +137,13 @@ def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jum
     return replace(_of_points(lines, indices, _places(lines)[indices], layer_jump), spread=lines.spread)
 
 
-def widened(lines: PseudoScanLines, reach: int, layer_jump: float) -> PseudoScanLines:
-    """The same profiles, each with the points of as many more, `reach`, on either side of it."""
-    (rows, cells), count = lines.shape, 2 * reach + 1
-    place = (_places(lines) + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
+def widened(lines: PseudoScanLines, reach: int, layer_jump: float, columns: np.ndarray) -> PseudoScanLines:
+    """The same profiles, each with the points of as many more, `reach`, on either side of it, in the columns of cells that (C,) bool names."""
+    (rows, cells), place = lines.shape, _places(lines)
+    kept = np.flatnonzero(columns.take(place % cells))
+    place = (place.take(kept) + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
     inside = np.flatnonzero((place >= 0) & (place < rows * cells))
-    indices = np.tile(np.arange(len(lines.point)), count)[inside]
+    indices = np.tile(kept, 2 * reach + 1)[inside]
     return replace(_of_points(lines, indices, place[inside], layer_jump), noise=lines.noise, spread=lines.spread)
 
 

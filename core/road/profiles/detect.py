@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from ...common.features import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION, Features
 from ...common.parallel import ordered_map
@@ -25,6 +26,9 @@ from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_pro
 from ..surface.ground_grid import is_thin
 from ..weights import CURBS, PROFILE
 from .steps import beside, find_averaged_steps, find_steps
+
+# derived: nats per m of road; the curb may be at any one of so many places across, and goes on for so long
+LEAST_EVIDENCE = np.log(CURBS.max_curb_offset / PROFILE.min_step_spacing) / CURBS.min_curb_length
 
 
 def tell_points(points: CurbPoints, progress: Progress) -> None:
@@ -56,7 +60,7 @@ def steps_of_section(decimation: PointDecimation, item: Section, settings: CurbS
     wide = section[0] - around, section[1] + around
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else CURBS.points_per_level_cell
     profiles: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
-    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing)}
+    full = {side for side, _, _, lines in profiles if not is_thin(lines.part(*section).count, width, lines.spacing, CURBS.thin_density)}
     # averages need every point
     if limit and any((lines.part(*section).spread > CURBS.noisy_share * settings.limits.clear_height).any() for *_, lines in profiles):
         profiles = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
@@ -92,13 +96,15 @@ def _steps_by_noise(lines, section, settings, overgrown, thin):
 
 
 def _with_wider_profiles(steps, lines, section, settings):
-    """Also the steps that more and more profiles together show, each where fewer of them show none."""
+    """Also the steps that more and more profiles together show, each where fewer of them hold few points and show none."""
+    points, count = uniform_filter1d(lines.count.mean(0), round(CURBS.thin_width / lines.spacing), mode="constant"), 1
     for reach in PROFILE.wider_profiles:
-        more = find_steps(widened(lines, reach, settings.layer_jump).part(*section), CURBS.low_curb_share * settings.limits.least_height,
-                          settings.max_height, PROFILE.least_sharpness)
-        off, count = more.s - (more.profile + 0.5) * lines.width, 2 * reach + 1
+        few, count = count * points < CURBS.thin_density * lines.width * lines.spacing, 2 * reach + 1
+        more = find_steps(widened(lines, reach, settings.layer_jump, few).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+                          settings.max_height, LEAST_EVIDENCE * count * lines.width)
+        off = more.s - (more.profile + 0.5) * lines.width
         # a face in one half of a profile alone begins or ends there
-        whole = (more.behind >= PROFILE.least_behind) & (np.abs(off) <= 0.25 * count * lines.width)
+        whole = np.abs(off) <= 0.25 * count * lines.width
         more = replace(more, s=more.s - off, u=more.u - more.skew * off, support=np.maximum(more.support // count, 1))[whole]
         steps = CurbSteps.join([steps, more[~beside(more, steps)]])
     return steps

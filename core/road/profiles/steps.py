@@ -11,11 +11,11 @@ from ..common.pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, near
 from ..weights import CURBS, PROFILE
 
 
-def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, least_sharpness: float = -np.inf) -> CurbSteps:
+def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, least_evidence: float = -np.inf) -> CurbSteps:
     """Steps on every single profile of one side.
 
     min_height, max_height : m, of a step
-    least_sharpness : as of `measure_corners`
+    least_evidence : as of `measure_corners`
 
     Returns CurbSteps, sorted by profile, then outward
     """
@@ -49,7 +49,7 @@ def find_steps(lines: PseudoScanLines, min_height: float, max_height: float, lea
     best = candidates[best_within(indices.take(candidates), row.take(candidates), (step - 2 * rough).take(candidates), span)]
     row, column, base, slope = (v.take(best) for v in (row, column, base, slope))
     up = _stays_up(low, base, slope, row, column, min_height, spacing)
-    return measure_corners(lines, row[up], column[up], min_height, max_height, least_sharpness)
+    return measure_corners(lines, row[up], column[up], min_height, max_height, least_evidence)
 
 
 def _stays_up(low, base, slope, rows, columns, min_height, spacing):

@@ -106,13 +106,14 @@ def known_median(values: np.ndarray, axis: int) -> np.ndarray:
     return np.squeeze(0.5 * (low + high), axis)
 
 
-def is_thin(count: np.ndarray, row_size: float, column_size: float) -> bool:
+def is_thin(count: np.ndarray, row_size: float, column_size: float, density: float) -> bool:
     """Do even the densest CURBS.thin_width metres across, as beside the track, hold few points in most of the rows that hold any?
 
     count : (R, C) points of cells that are `row_size` m along and `column_size` m across the road
+    density : points per m² that are not few
     """
     rows = uniform_filter1d(count[count.any(axis=1)].astype(float), round(CURBS.thin_width / column_size), axis=1, mode="constant")
-    return not len(rows) or np.quantile(rows, 0.75, axis=0).max() < CURBS.thin_density * row_size * column_size
+    return not len(rows) or np.quantile(rows, 0.75, axis=0).max() < density * row_size * column_size
 
 
 def median_about(values: np.ndarray, reach: int) -> np.ndarray:
@@ -427,7 +428,7 @@ def _profiles_of_window(survey, points, road, row):
         result = _ground_cells(points, first, rows, height, length, SURFACE.profile_column,
                                lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead)
         result.height -= height(result.stations)[:, None]
-        return result, is_thin(result.count, length, SURFACE.profile_column)
+        return result, is_thin(result.count, length, SURFACE.profile_column, SURFACE.thin_density)
 
     single, thin = measured(points, first, PROFILES_PER_WINDOW, SURFACE.profile_row)
     # a road has few points where it ends, too

@@ -52,7 +52,7 @@ def test_a_cloud_is_thin_where_the_ground_beside_the_track_holds_few_points_too(
     """Cells of 1 m by 0.1 m, 10 m across: 10 points each are 100 per m², and beside the track there are four times as many."""
     everywhere = np.full((20, 100), 10)
     beside_track = np.where(np.abs(np.arange(100) - 50) < 15, 40, everywhere)
-    assert is_thin(everywhere, 1.0, 0.1) and not is_thin(beside_track, 1.0, 0.1)
+    assert is_thin(everywhere, 1.0, 0.1, 320.0) and not is_thin(beside_track, 1.0, 0.1, 320.0)
     # the end of the road is in sight of the last place of the drive
     beside_track[5:] = 0
-    assert not is_thin(beside_track, 1.0, 0.1) and is_thin(np.zeros((20, 100)), 1.0, 0.1)
+    assert not is_thin(beside_track, 1.0, 0.1, 320.0) and is_thin(np.zeros((20, 100)), 1.0, 0.1, 320.0)
