@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from ..core.common import features
-from ..core.common.setting import limits_of
+from ..core.common.setting import Choices, limits_of
 from .texts import help_texts, tr
 
 # In the order of the work
@@ -173,9 +173,9 @@ class OutputSpec(ParameterSpec):
 
 @dataclass(frozen=True)
 class SettingSpec:
-    """One field of a core Settings class as an input: the default and the limits are the core's.
+    """One field of a core Settings class as an input: the default, the limits and the choices are the core's.
 
-    `choices` makes it a list of words. Where a number is a multiple of the core's, its maximum is so many `times` the core's.
+    `words` are choices that it does not have. Where a number is a multiple of the core's, its maximum is so many `times` the core's.
     """
 
     name: str
@@ -183,7 +183,7 @@ class SettingSpec:
     field: str
     label: str = ""
     help: str = ""
-    choices: tuple = ()
+    words: tuple = ()
     times: float = 1.0
     advanced: bool = False
 
@@ -193,6 +193,13 @@ class SettingSpec:
     def default(self):
         owner = settings_class(self.settings)
         return None if owner is None else next(entry.default for entry in fields(owner) if entry.name == self.field)
+
+    @property
+    def choices(self):
+        """The words of a choice; none where a package that knows them is missing."""
+        owner = settings_class(self.settings)
+        allowed = None if owner is None else limits_of(owner, self.field)
+        return allowed.words if isinstance(allowed, Choices) else self.words
 
     @property
     def optional(self):

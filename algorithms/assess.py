@@ -235,17 +235,14 @@ class AssessMarkings(Algorithm):
         layer = products.assess.layers.marking_layer(accuracy, result.geometries, reference.geometries, *classes, crs)
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
-            self._report(call, accuracy, layer, frame, image, progress.warnings)
+            station, along = products.assess.matching.stations_of_blocks(accuracy.blocks, frame)
+            names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
+            call.text("REPORT", products.report.assessment.marking_report(accuracy, layer, names, station, along, image, progress.warnings))
         numbers = found_numbers(_marking_numbers(accuracy))
         progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.", cells=settings.tolerance,
                          strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
                          tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
         return numbers
-
-    def _report(self, call, accuracy, layer, frame, image, warnings):
-        station, along = products.assess.matching.stations_of_blocks(accuracy.blocks, frame)
-        names = call.layer_name("INPUT"), call.layer_name("REFERENCE")
-        call.text("REPORT", products.report.assessment.marking_report(accuracy, layer, names, station, along, image, warnings))
 
 
 def _marking_numbers(accuracy):

@@ -78,14 +78,12 @@ class Call:
 
     def point_clouds(self):
         """Paths of the clouds, each proven to be there; of folders and wildcards the files they hold."""
-        return [existing_file(path, self.label("POINT_CLOUDS")) for path in self._cloud_files()]
-
-    def _cloud_files(self):
-        return cloud_files(self.files("POINT_CLOUDS"), self.label("POINT_CLOUDS"))
+        return [existing_file(path, self.label("POINT_CLOUDS")) for path in self.surveyed()]
 
     def surveyed(self):
         """The point clouds whose name the results go by; none where a stage starts from another's result."""
-        return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self._cloud_files()
+        declared = self.algorithm.parameter("POINT_CLOUDS")
+        return [] if declared is None else cloud_files(self.files("POINT_CLOUDS"), declared.label)
 
     @property
     def survey(self):

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import Features
-from ..core.countries.catalogue import COUNTRIES
 from .algorithm import MAP_LAYERS, Algorithm, settings_of
 from .markings import CLUSTER_SETTINGS, IMAGE_SETTINGS, INTENSITY_SETTINGS, LINE_SETTINGS, MARKING_METHOD, OUTLIER_SETTINGS, marking_settings
 from .road import CURB_SETTINGS, EDGE_SETTINGS, METHOD_SETTING, SCANLINE_METHOD_SETTINGS, SURFACE_SETTINGS, edges_of
@@ -19,8 +18,7 @@ from .texts import tr
 if TYPE_CHECKING:
     from ..core.corrections.corrections import Corrections
 
-DRIVING_SETTINGS = settings_of("core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE",
-    COUNTRY=dict(choices=tuple(COUNTRIES)), TRAFFIC_SIDE=dict(choices=("automatic", "right", "left")))
+DRIVING_SETTINGS = settings_of("core.driving.settings:DrivingSettings", "COUNTRY* LANE_WIDTH LINE_DISTANCE* TRAFFIC_SIDE")
 
 
 class DrivingLines(Algorithm):
@@ -176,7 +174,8 @@ class RoadMap(Algorithm):
             call.layer(name, layer if layer is not None else Features(MAP_LAYERS[name].geometry, MAP_LAYERS[name].schema, crs=road_map.crs))
         if call.wants("PASSES"):
             call.layer("PASSES", core.survey.frame.placement.passes_to_features(road_map.frame, road_map.crs))
-        call.layer("CURB_POINTS", road_map.layer("curb_points"))
+        if call.wants("CURB_POINTS"):
+            call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
             call.text("REPORT", products.report.road_map.road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.features import COLOUR, LANES, MAP_FINDINGS, ROAD_ATTRIBUTES
-from ..core.common.setting import Limited, setting
+from ..core.common.setting import Limited, choice, setting
 from ..core.common.texts import word
 from ..core.lazy import shapely
 from .algorithm import MAP_LAYERS, Algorithm, settings_of
@@ -367,16 +367,15 @@ class SheetSettings(Limited):
     author: str = ""
     heights: str = ""
     credit: str = ""
-    paper: str = "A3"
-    orientation: str = "landscape"
-    scale: str = "automatic"
+    paper: str = choice("A3", PAPERS, "The paper")
+    orientation: str = choice("landscape", ("landscape", "portrait"), "The orientation")
+    scale: str = choice("automatic", ("automatic", *SCALES), "The scale")
     profile: bool = True
     section_interval: float = setting(20.0, 0.0, 10_000.0, "Interval of the cross-sections", "m")
 
 
 SHEET_SETTINGS = settings_of("algorithms.export:SheetSettings",
-    "TITLE OFFICE AUTHOR PAPER ORIENTATION SCALE PROFILE SECTION_INTERVAL HEIGHT_SYSTEM* CREDIT*", PAPER=dict(choices=PAPERS),
-    ORIENTATION=dict(choices=("landscape", "portrait")), SCALE=dict(choices=("automatic", *SCALES)), HEIGHT_SYSTEM=dict(field="heights"))
+    "TITLE OFFICE AUTHOR PAPER ORIENTATION SCALE PROFILE SECTION_INTERVAL HEIGHT_SYSTEM* CREDIT*", HEIGHT_SYSTEM=dict(field="heights"))
 
 
 class PrintSheets(Algorithm):

@@ -3,7 +3,6 @@
 from datetime import datetime
 
 from ..core.common.features import BREAKLINES, CROSS_SECTIONS, ROADSIDE, ROADSIDE_OBJECTS, SURFACE_FACES
-from ..core.countries.catalogue import COUNTRIES
 from .algorithm import Algorithm, settings_of
 from .rooms import products
 from .survey_input import READING_SETTINGS, open_survey_with
@@ -31,7 +30,7 @@ def survey_with_borders(call, progress, above_road):
 ABOVE_SECTIONS = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
 
 SECTION_SETTINGS = settings_of("products.inventory.borders:CrossSectionSettings",
-    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*", COUNTRY=dict(choices=tuple(COUNTRIES)))
+    "INTERVAL COUNTRY MAX_RUT MIN_CROSSFALL* MAX_CROSSFALL* MAX_GRADE* MIN_WIDTH* MIN_CLEARANCE*")
 
 
 class CrossSections(Algorithm):
@@ -120,7 +119,7 @@ class SurfaceOfRoad(Algorithm):
 ABOVE_ROADSIDE = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = settings_of("products.inventory.borders:RoadsideSettings",
-    "INTERVAL* COUNTRY* REACH MIN_LENGTH MIN_HEIGHT* MAX_GAP* MIN_POLE_HEIGHT*", COUNTRY=dict(choices=tuple(COUNTRIES)))
+    "INTERVAL* COUNTRY* REACH MIN_LENGTH MIN_HEIGHT* MAX_GAP* MIN_POLE_HEIGHT*")
 
 
 class Roadside(Algorithm):

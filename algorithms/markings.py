@@ -11,7 +11,7 @@ from .rooms import core, products
 from .survey_input import bright_road_points_of, check_layers_on_roads, frame_of, paint_of, road_points_of
 from .texts import tr
 
-INTENSITY_SETTINGS = settings_of("core.intensity.correction:IntensitySettings", "SCALE*", SCALE=dict(choices=("automatic", "linear", "logarithmic")))
+INTENSITY_SETTINGS = settings_of("core.intensity.correction:IntensitySettings", "SCALE*")
 
 
 class CorrectIntensity(Algorithm):
@@ -91,7 +91,7 @@ class ExtractMarkings(Algorithm):
         core.survey.road_points_las.write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))
 
 
-OUTLIER_SETTINGS = settings_of("core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE", SCOPE=dict(choices=("all", "windows")))
+OUTLIER_SETTINGS = settings_of("core.markings.outliers:OutlierSettings", "NEIGHBOURS STD_RATIO SCOPE")
 
 
 class RemoveOutliers(Algorithm):
@@ -131,8 +131,8 @@ class ClusterMarkings(Algorithm):
         call.layer("MARKINGS", markings.to_features(frame))
 
 
-LINE_SETTINGS = settings_of("core.markings.lines.fit:MarkingLineSettings", "COUNTRY* CURVE DEGREE", COUNTRY=dict(choices=tuple(COUNTRIES)),
-    CURVE=dict(choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")))
+LINE_SETTINGS = settings_of("core.markings.lines.fit:MarkingLineSettings", "COUNTRY* CURVE DEGREE", COUNTRY=dict(words=tuple(COUNTRIES)),
+    CURVE=dict(words=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")))
 
 
 class FitMarkingLines(Algorithm):

@@ -80,8 +80,7 @@ def _rough_points(call, image, crs):
 
 
 GEOREFERENCE_SETTINGS = settings_of("products.overlay.georeference:GeoreferenceSettings",
-    "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*", EXTRAPOLATION=dict(choices=("automatic", "draw", "leave-out")),
-    RESAMPLING=dict(choices=("bilinear", "nearest", "cubic")))
+    "ORDER PIXEL_SIZE EXTRAPOLATION* RESAMPLING* CHECK_DISABLED*")
 
 
 class GeoreferenceImage(Algorithm):

@@ -112,8 +112,7 @@ def edges_of(layer, frame):
     return None if layer is None else core.road.edges.road_edges.RoadEdges.from_features(layer, frame).densified(frame)
 
 
-METHOD_SETTING = settings_of("core.road.detect_boundaries:BoundarySettings", "BOUNDARY_METHOD", BOUNDARY_METHOD=dict(
-    field="method", choices=("profiles", "scanlines", "both")))
+METHOD_SETTING = settings_of("core.road.detect_boundaries:BoundarySettings", "BOUNDARY_METHOD", BOUNDARY_METHOD=dict(field="method"))
 # Both methods ask for one least height
 SCANLINE_METHOD_SETTINGS = tuple(spec for spec in BOUNDARY_SETTINGS if spec.name == "MIN_HEIGHT")
 OFFERED = ("BLOCK_LENGTH", "SLOPE", "MIN_HEIGHT", "MAX_HEIGHT")

@@ -87,17 +87,13 @@ class InspectSurvey(Algorithm):
         first, last = inspection.time_span or (None, None)
         values = (
             inspection.count, inspection.per_area["mean"], inspection.per_volume["mean"], first, last, len(inspection.scanners),
-            _percent(inspection.near_share), _percent(inspection.in_time_share),
+            *(None if share is None else 100.0 * share for share in (inspection.near_share, inspection.in_time_share)),
         )
         return {name: float(value) for name, value in zip(self.NUMBERS, values) if value is not None}
 
 
-def _percent(share):
-    return None if share is None else 100.0 * share
-
-
 SAMPLE_SETTINGS = settings_of("simulator.survey:SampleSettings", "SCENE LENGTH SEED SPEED* PULSE_RATE* ROTATION_RATE* RADIUS*",
-    SPEED=dict(field="speed_kmh"), SCENE=dict(choices=(
+    SPEED=dict(field="speed_kmh"), SCENE=dict(words=(
         "street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine", "crossing",
         "roundabout", "outskirts", "cycle-lanes")))
 

@@ -176,9 +176,7 @@ def _road_pass_station(trajectory):
 
 
 SURVEY_SETTINGS = settings_of("core.survey.open_survey:SurveySettings",
-    "CORRIDOR* SCANNER_FIELD* TIME* INTENSITY_FROM* FIT_PASSES* TRAJECTORY_SIGMA*",
-    SCANNER_FIELD=dict(choices=("automatic", "scanner_channel", "point_source_id")),
-    TIME=dict(choices=("automatic", "gps", "adjusted", "week", "day")), INTENSITY_FROM=dict(choices=("intensity", "rgb")))
+    "CORRIDOR* SCANNER_FIELD* TIME* INTENSITY_FROM* FIT_PASSES* TRAJECTORY_SIGMA*")
 # of those who draw no lines
 READING_SETTINGS = tuple(spec for spec in SURVEY_SETTINGS if spec.name != "TRAJECTORY_SIGMA")
 

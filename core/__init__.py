@@ -21,7 +21,7 @@ PUBLIC = {
     "survey.frame.placement": ("FrameLines", "line_parts", "lines_in_frame"),   # lines of a layer in the road frame
     "survey.store.records": ("COORDINATE_SCALE", "Points"),   # points, whose coordinates are whole numbers of 0.1 mm
     "survey.store.columns": ("Columns",),   # records of points, column by column
-    "survey.store.road_points": ("RoadPoints",),   # points of the road, by section
+    "survey.store.road_points": ("RoadPoints", "columns_of_roads"),   # points of the road, by section, and column by column
     "survey.las.reader": ("CloudHeader", "open_cloud", "read_blocks", "read_headers"),   # LAS, LAZ and COPC files
     # scanners and intensity of files, and points that are no noise
     "survey.las.point_fields": ("INTENSITY_SOURCES", "IntensitySource", "ScannerCensus", "in_one_scale", "intensity_source_of", "valid_points",

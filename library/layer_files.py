@@ -76,7 +76,9 @@ class LayerFile(VectorSource):
                 self.table = layer.name
                 self.names = list(layer.schema["properties"])
                 geometry = layer.schema["geometry"]
-                self.stored_crs = _crs_text(layer.crs_wkt)
+                # a GeoPackage has entries of its own for layers without a CRS
+                named = layer.crs_wkt and not core.io.crs.parse_crs(layer.crs_wkt).name.lower().startswith("undefined ")
+                self.stored_crs = layer.crs_wkt if named else ""
                 if layer.driver == "GeoJSON":
                     with fiona.open(self.path, layer=self.table, NATIVE_DATA="YES") as native:
                         check_crs_of_geojson(self.path, native.tags(ns="NATIVE_DATA").get("NATIVE_DATA"))
@@ -143,11 +145,6 @@ def _reported_errors():
     finally:
         logger.removeHandler(handler)
         logger.propagate = before
-
-
-def _crs_text(wkt):
-    """WKT, "" for the entries that GeoPackage has for layers without a CRS."""
-    return wkt if wkt and not core.io.crs.parse_crs(wkt).name.lower().startswith("undefined ") else ""
 
 
 def write_layer(path, table, features, check_cancelled):

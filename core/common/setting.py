@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
@@ -43,13 +44,31 @@ class Limits:
         raise RoadExtractionError(f"{self.name} is {value}{unit}; it must be between {self.minimum:.10g} and {self.maximum:.10g}{unit}{zero}.")
 
 
+@dataclass(frozen=True)
+class Choices:
+    """The words that a setting may be; `name` as of Limits."""
+
+    words: tuple[str, ...]
+    name: str
+
+    def check(self, value: str) -> None:
+        """Refuse another word."""
+        if value not in self.words:
+            raise RoadExtractionError(f"{self.name} is {value!r}; it must be one of {', '.join(self.words)}.")
+
+
 def setting(default: Any, minimum: float, maximum: float, name: str, unit: str = "", zero: str = "") -> Any:
     """A dataclass field of a Settings class with Limits; the class is Limited, or calls `check_limits` in its `__post_init__`."""
     return field(default=default, metadata={_KEY: Limits(minimum, maximum, name, unit, zero)})
 
 
-def limits_of(settings: Any, name: str) -> Limits | None:
-    """The Limits of a field of a Settings class or object, None where it has none."""
+def choice(default: str, words: Iterable[str], name: str) -> Any:
+    """As `setting`, of a word that is one of several."""
+    return field(default=default, metadata={_KEY: Choices(tuple(words), name)})
+
+
+def limits_of(settings: Any, name: str) -> Limits | Choices | None:
+    """The Limits or Choices of a field of a Settings class or object, None where it has none."""
     return next(entry.metadata.get(_KEY) for entry in fields(settings) if entry.name == name)
 
 

@@ -288,18 +288,14 @@ def correct_markings(markings: MarkingObjects, corrections: Corrections) -> Mark
     middles = shapely.point_on_surface(polygons)
     keep = np.ones(len(markings), bool)
     for correction in marking_corrections:
-        affected = _about(correction, polygons, middles)
+        alone = len(correction.places) == 1
+        drawn = shapely.points(correction.places[0, :2]) if alone else shapely.linestrings(correction.places[:, :2])
+        affected = shapely.distance(polygons if alone else middles, drawn) <= _LineKind.reach
         if affected.any():
             corrections.matched.add(correction.row)
             if correction.action == "delete":
                 keep &= ~affected
     return markings if keep.all() else markings[keep]
-
-
-def _about(correction: Correction, polygons: np.ndarray, middles: np.ndarray) -> np.ndarray:
-    if len(correction.places) == 1:
-        return shapely.distance(polygons, shapely.points(correction.places[0, :2])) <= _LineKind.reach
-    return shapely.distance(middles, shapely.linestrings(correction.places[:, :2])) <= _LineKind.reach
 
 
 def correct_marking_lines(lines: PaintedLines, frame: RoadFrame, corrections: Corrections, known: np.ndarray) -> PaintedLines:

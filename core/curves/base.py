@@ -194,7 +194,7 @@ class Arc(Curve):
         along = np.where(small, 1.0 - turn**2 / 6, np.sin(safe) / safe) * u
         across = np.where(small, turn / 2, (1 - np.cos(safe)) / safe) * u
         c, s = np.cos(self.direction), np.sin(self.direction)
-        return np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
+        return np.column_stack([self.x + along * c - across * s, self.y + along * s + across * c])
 
     def heading(self, u: np.ndarray | float) -> np.ndarray:
         return self.direction + self.bend * np.asarray(u, float)

@@ -284,12 +284,12 @@ def _draw_to(element, places, station):
 
 def without_short_status(status: np.ndarray) -> np.ndarray:
     """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours, the shortest first."""
-    begins = np.flatnonzero(np.r_[True, np.diff(status) != 0])
-    codes, lengths = status[begins], np.diff(np.r_[begins, len(status)])
+    begins = np.flatnonzero(np.append(True, np.diff(status) != 0))
+    codes, lengths = status[begins], np.diff(np.append(begins, len(status)))
     while len(codes) > 1 and lengths.min() < int(ALIGNMENT.min_status_length / STATION_STEP):
         k = int(np.argmin(lengths))
         codes[k] = max(codes[i] for i in (k - 1, k + 1) if 0 <= i < len(codes))
-        begins = np.flatnonzero(np.r_[True, np.diff(codes) != 0])
+        begins = np.flatnonzero(np.append(True, np.diff(codes) != 0))
         codes, lengths = codes[begins], np.add.reduceat(lengths, begins)
     return np.repeat(codes, lengths)
 

@@ -128,7 +128,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
         x, y, stations = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
             continue
-        vertices = np.c_[x, y, np.interp(stations, grid, z)]
+        vertices = np.column_stack([x, y, np.interp(stations, grid, z)])
         element = element_of(elements, start, end)
         speed = None if element is None or not is_curve(arc := element.arc) else design_check(arc.radius, arc.length, element.complete, national)[0]
         yield dict(
@@ -167,8 +167,8 @@ def _between(course, start, end, code_first, code_last):
     """Vertices of a course from one station to another, with a vertex of its own at every cut."""
     s = course.s
     inside = slice(np.searchsorted(s, start + 0.02, side="right"), np.searchsorted(s, end - 0.02))
-    stations = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
-    stations = stations[np.r_[True, np.diff(stations) > 0]]
+    stations = np.concatenate([s[:1] if code_first else [start], s[inside], s[-1:] if code_last else [end]])
+    stations = stations[np.append(True, np.diff(stations) > 0)]
     return np.interp(stations, s, course.x), np.interp(stations, s, course.y), stations
 
 

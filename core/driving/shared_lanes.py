@@ -121,9 +121,8 @@ def _one_lane(lane, other, station, at, d):
     both = (at >= 0) & (row >= 0) & (row < len(other.track)) & lane.kept
     row = np.where(both, row, 0)
     both &= other.kept[row]
-    with np.errstate(invalid="ignore"):
-        same = both & (np.abs(d - other.track.d[row]) < np.maximum(lane.track.width, other.track.width[row]) / 2)
-        same &= np.abs(np.gradient(d)) < EVIDENCE.along * np.abs(np.gradient(station)) if len(d) > 1 else False
+    same = both & (np.abs(d - other.track.d[row]) < np.maximum(lane.track.width, other.track.width[row]) / 2)
+    same &= np.abs(np.gradient(d)) < EVIDENCE.along * np.abs(np.gradient(station)) if len(d) > 1 else False
     if not same.any():
         return
     heights = (of.frame.track_height(of.road.road.number, s[same]) for of, s in ((lane, lane.s), (other, station)))

@@ -334,8 +334,7 @@ def _mixed(level, spread):
     for values, result, method in zip((list(around(spread).values()), lines), usual, ("linear", "lower")):
         some = np.isfinite(values).any(axis=0)
         result[some] = np.nanquantile(np.stack(values)[:, some], 0.5, axis=0, method=method)
-    with np.errstate(invalid="ignore"):
-        return (spread > ASPHALT.mixed_bin_spread * usual[0]) | (level > (1.0 + ASPHALT.paint_sigmas * usual[0]) * np.exp(usual[1]))
+    return (spread > ASPHALT.mixed_bin_spread * usual[0]) | (level > (1.0 + ASPHALT.paint_sigmas * usual[0]) * np.exp(usual[1]))
 
 
 def _sparse_bins_joined(histograms):

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..common.setting import Limited, choice
 from ..execution.in_step import Asked, Work, in_step
 from ..survey.frame.road_frame import Pass, RoadFrame
 from ..survey.store.records import Points
@@ -99,12 +99,9 @@ def saturation_of(road_points: RoadPoints) -> _Saturation:
 
 
 @dataclass(frozen=True)
-class IntensitySettings:
-    scale: str = "automatic"   # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
-
-    def __post_init__(self) -> None:
-        if self.scale not in ("automatic", "linear", "logarithmic"):
-            raise RoadExtractionError(f"The intensity scale is {self.scale!r}; it is one of automatic, linear, logarithmic.")
+class IntensitySettings(Limited):
+    # "automatic" decides between linear and logarithmic by the spread of asphalt; "linear" multiplies, "logarithmic" adds
+    scale: str = choice("automatic", ("automatic", "linear", "logarithmic"), "The intensity scale")
 
 
 @dataclass

@@ -10,10 +10,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..common.arrays import order_by
-from ..common.errors import RoadExtractionError
 from ..common.parallel import check_cancelled
 from ..common.progress import Progress
-from ..common.setting import check_limits, setting
+from ..common.setting import Limited, choice, setting
 from ..execution.phase import THREADS, Executor, Phase
 from ..lazy import cv2
 from ..survey.store.records import COORDINATE_SCALE
@@ -21,7 +20,6 @@ from ..survey.store.road_points import RoadPoints
 from ..survey.store.section_store import SectionStore, StoreIndex, Stretch
 from .weights import OUTLIERS
 
-OUTLIER_SCOPES = ("all", "windows")
 NEIGHBOUR_HALO = 2.0      # cost: m of station beyond a window where neighbours are still looked for
 MAX_LIMIT_SAMPLE = 1500   # cost: points of a band from which its limit is taken; where there are twice as many, of an evenly spaced sample
 TASK_WINDOWS = 5       # cost: windows of 20 m that are looked at together
@@ -31,7 +29,7 @@ QUERIES_PER_BLOCK = 1 << 16       # cost: points asked for at a time: bounds the
 
 
 @dataclass(frozen=True)
-class OutlierSettings:
+class OutlierSettings(Limited):
     """How far a point may lie from its neighbours.
 
     neighbours : k, how many neighbours the mean distance is taken over
@@ -42,12 +40,7 @@ class OutlierSettings:
 
     neighbours: int = setting(20, 1, 1000, "The number of neighbours")
     std_ratio: float = setting(1.0, 0.0, 20.0, "The standard deviation ratio")
-    scope: str = "windows"
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if self.scope not in OUTLIER_SCOPES:
-            raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(OUTLIER_SCOPES)}.")
+    scope: str = choice("windows", ("all", "windows"), "The scope of outliers")
 
 
 def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress(),

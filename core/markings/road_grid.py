@@ -144,7 +144,7 @@ def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarra
         return np.empty((0, 2), np.int64), np.empty(0, np.int64)
     order = order_by(column, row)
     row, column = row.take(order), column.take(order)
-    new = np.r_[True, (row[1:] != row[:-1]) | (column[1:] != column[:-1])]
+    new = np.append(True, (row[1:] != row[:-1]) | (column[1:] != column[:-1]))
     member = np.empty(len(row), np.int64)
     member[order] = np.cumsum(new) - 1
     return np.stack([row[new], column[new]], axis=1).astype(np.int64), member

@@ -246,9 +246,6 @@ class STRANDS:
     max_distance_to_line: float = 0.15   # m between a marking and the line along it
     paint_beside_piece: float = 2.0   # m of station before and after a piece whose paint counts for its offset
     # Roughness of paint about fitted lines.
-    max_paint_distance: float = 0.25   # m from a fitted line within which a point is its paint
-    min_width_ratio: float = 0.03   # of the variances along the second and the first principal direction: below, neighbours lie in a line
-    max_quadric_condition: float = 1e3   # condition number of the normal equations of the quadric
 
 
 @table
@@ -415,8 +412,8 @@ class NOISY:
 class PHOTOGRAPHS:
     """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
 
-    The nats are near a logistic regression over pieces of four simulated streets in the brightness of photographs with shadows of trees, houses and
-    cars, seams, crossfall of light, displaced images and the colour of cars beside them; three other streets were kept aside.
+    The nats lie between logistic regressions over pieces of four and of two simulated streets in the brightness of photographs with shadows of trees,
+    houses and cars, seams, crossfall of light, displaced images and the colour of cars beside them; other streets and other light were kept aside.
     """
 
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
@@ -439,7 +436,7 @@ class PHOTOGRAPHS:
     # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
     # breadth; of nearness of the rim; of how much brighter the sun nearby is, as most flecks of it in the shade are dimmer; of nearness to paint
     # and not to asphalt. Without any of them a piece may be either
-    nats: tuple[float, ...] = -2.0, -3.0, 0.8, -6.5, -6.0, 4.6
+    nats: tuple[float, ...] = -3.0, -2.5, 0.9, -7.0, -4.0, 4.4
 
 
 @table

@@ -35,7 +35,6 @@ from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_cor
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
-from ..markings.lines.curvature import marking_curvature
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
@@ -55,8 +54,7 @@ from ..survey.density import CubeDensity
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.las.reader import CloudHeader, read_headers, states_of
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.store.records import ROAD_POINT, SURVEY_POINT, Points
-from ..survey.store.road_points import columns_of_roads
+from ..survey.store.records import ROAD_POINT, SURVEY_POINT
 from ..survey.trajectory.trajectory import Trajectory, reproject_trajectory
 from ..survey.weights import FRAME
 
@@ -111,7 +109,7 @@ class RoadMap:
     counts: dict = field(default_factory=dict)   # numbers of curb points, road points and marking points
     survey_facts: dict = field(default_factory=dict)   # numbers of files, scanners, passes, roads and points, and the sensor heights
     density: tuple[CubeDensity, ...] = ()   # CubeDensity of the points near the road and of the road points
-    marking_curvature: Any = None   # MarkingCurvature, None without lines
+    paint: Any = None   # RoadPoints with clusters, there until `free` is called; None where there are no markings
     country: str = DrivingSettings.country   # whose design code the curves are checked against
     corrections: Corrections = field(default_factory=Corrections)   # of an analyst, and which of them something was found for
     free: Callable[[], None] = lambda: None   # frees the disk space of the points, where no later run wants them
@@ -256,6 +254,7 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters,
                                      executor=executor, depends=settings.clusters)
+    result.paint = clustered
     executor.forget()
     markings = correct_markings(markings, result.corrections)
     readings = result.corrections.taken(frame)
@@ -266,15 +265,13 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     drawn = correct_marking_lines(lines, frame, result.corrections, edge_places)
 
     def named():
-        """Lines and markings with their names, their layers, and the curvature of the paint."""
+        """Lines and markings with their names, and their layers."""
         of_lines = lines if drawn is lines else named_by_estimate(drawn, frame, country(settings.lines.country).usual_lane, markings, beside,
                                                                   result.road_points, clustered, taken=readings)
-        of_markings, layer = named_by_lines(markings, of_lines), of_lines.to_features(frame)
-        paint = Points(columns_of_roads(clustered.store, clustered.roads()))
-        return of_lines, of_markings, layer, of_markings.to_features(frame), marking_curvature(paint, layer.geometries, frame.origin)
+        of_markings = named_by_lines(markings, of_lines)
+        return of_lines, of_markings, of_lines.to_features(frame), of_markings.to_features(frame)
 
-    lines, markings, result.marking_lines, result.markings, result.marking_curvature = stages.follows(
-        "named", named, result.corrections.asked("marking"))
+    lines, markings, result.marking_lines, result.markings = stages.follows("named", named, result.corrections.asked("marking"))
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
         markings=markings, edges=beside, road_points=result.road_points, taken=readings, depends=settings.driving)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..common.arrays import mask_runs, stretch_of
-from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from ..common.setting import Limited, choice
 from ..execution.in_step import in_step
 from ..execution.phase import THREADS
 from ..survey.frame.road_frame import RoadFrame
@@ -35,12 +35,11 @@ from .surface.pavement_lines import with_pavement_edges
 from .surface.road_look import RoadLook
 from .weights import BOUNDARY, CURBS
 
-BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 METHODS = ("scanlines", "profiles")   # in the order of trust: three planes are a stricter model of a curb than a profile
 
 
 @dataclass(frozen=True)
-class BoundarySettings:
+class BoundarySettings(Limited):
     """How road boundaries are found.
 
     method : "profiles", "scanlines", or "both": one path along the road through what the two see
@@ -49,15 +48,10 @@ class BoundarySettings:
     planes : settings of the planes in which scanlines lie
     """
 
-    method: str = "both"
+    method: str = choice("both", ("profiles", "scanlines", "both"), "The boundary method")
     curbs: CurbSettings = CurbSettings()
     scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
     planes: ScanlineSettings = ScanlineSettings()
-
-    def __post_init__(self) -> None:
-        if self.method not in BOUNDARY_METHODS:
-            raise RoadExtractionError(f"The boundary method {self.method!r} is not known; "
-                                      f"choose {', '.join(BOUNDARY_METHODS[:-1])} or {BOUNDARY_METHODS[-1]}.")
 
 
 @dataclass
@@ -196,8 +190,7 @@ def measure_agreement(edges: RoadEdges, first: CurbPoints, second: CurbPoints, f
                 distances = distances[np.isfinite(distances)]
                 if len(distances):
                     agree[k] = round(100 * float(np.quantile(distances, BOUNDARY.agreement_quantile)), 1)
-            with np.errstate(invalid="ignore"):
-                differing = difference > BOUNDARY.min_reported_difference
+            differing = difference > BOUNDARY.min_reported_difference
             for a, b in mask_runs(differing):
                 if (b - a) * BOUNDARY.comparison_step < BOUNDARY.min_reported_length:
                     continue

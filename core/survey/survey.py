@@ -11,9 +11,8 @@ from uuid import uuid4
 
 import numpy as np
 
-from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..common.setting import check_limits, setting
+from ..common.setting import Limited, choice, setting
 from ..execution.phase import THREADS, Executor, Phase, Recipe, digest, read_plain, write_plain
 from .adjustment.register import PassCorrections
 from .estimation.adjustment import ScannerSplitter
@@ -31,7 +30,7 @@ SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_in
 
 
 @dataclass(frozen=True)
-class SurveySettings:
+class SurveySettings(Limited):
     """Settings of reading a survey.
 
     trajectory_sigma : m, one sigma across of the trajectory, and so of all points, as its processing or check points tell; 0 where unknown
@@ -39,20 +38,15 @@ class SurveySettings:
     """
 
     corridor: float = setting(FRAME.corridor, 5.0, 100.0, "The corridor", "m")   # m either side of the reference line of a road
-    scanner_field: str = "automatic"   # "automatic", "scanner_channel" or "point_source_id"
-    time: str = "automatic"   # time system of the trajectory: automatic, gps, adjusted, week or day
+    scanner_field: str = choice("automatic", ("automatic", "scanner_channel", "point_source_id"), "The scanner field")
+    time: str = choice("automatic", ("automatic", "gps", "adjusted", "week", "day"), "The time system of the trajectory")
     crs: str = ""   # WKT for clouds that carry none
-    intensity_from: str = INTENSITY_SOURCES[0]   # "intensity", or "rgb" for the luminance of the colours
+    intensity_from: str = choice(INTENSITY_SOURCES[0], INTENSITY_SOURCES, "The source of the intensity")   # "rgb": the luminance of the colours
     fit_passes: bool = True   # whether passes over one road are adjusted to each other
     trajectory_sigma: float = setting(0.0, 0.0, 10.0, "The accuracy of the trajectory", "m")
     above_road: float = setting(READING.kept_above_road, 1.0, 100.0, "The height above the road", "m")
     section_length: float | None = None   # m of station in a section of the store; None for as many as hold some hundred thousand points
     block: int = LAS.points_per_block   # points decoded at a time
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        if self.intensity_from not in INTENSITY_SOURCES:
-            raise RoadExtractionError(f"Intensity cannot be taken from “{self.intensity_from}”; choose one of {', '.join(INTENSITY_SOURCES)}.")
 
 
 @dataclass

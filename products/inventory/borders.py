@@ -10,8 +10,8 @@ import shapely
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
-from ...core.common.setting import check_limits, setting
-from ...core.countries.catalogue import NEUTRAL, Country, SectionLimits, country
+from ...core.common.setting import Limited, check_limits, choice, setting
+from ...core.countries.catalogue import COUNTRIES, NEUTRAL, Country, SectionLimits, country
 from ...core.driving.layers import Lanes
 from ...core.survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...core.survey.frame.road_frame import RoadFrame
@@ -223,7 +223,7 @@ class CrossSectionSettings:
     """
 
     interval: float = setting(10.0, 1.0, 1000.0, "The interval", "m")   # m of station between sections
-    country: str = NEUTRAL.name   # of the catalogue
+    country: str = choice(NEUTRAL.name, COUNTRIES, "The country")
     max_rut: float = setting(0.0, 1.0, 200.0, "The rut depth", "mm", "for the country's")   # mm, of the rut depth under a straight edge of 2 m
     min_crossfall: float = setting(0.0, 0.1, 20.0, "The least crossfall", "%", "for the country's")
     max_crossfall: float = setting(0.0, 0.1, 20.0, "The greatest crossfall", "%", "for the country's")
@@ -249,17 +249,13 @@ class CrossSectionSettings:
 # Settings of the roadside.
 
 @dataclass(frozen=True)
-class RoadsideSettings:
+class RoadsideSettings(Limited):
     """What counts as standing beside the road."""
 
     interval: float = setting(10.0, 1.0, 1000.0, "The interval", "m")   # m of station between vertices of the lines at most
-    country: str = NEUTRAL.name   # of the catalogue, whose lanes tell two marking lines that bound one, where there are no edges
+    country: str = choice(NEUTRAL.name, COUNTRIES, "The country")   # whose lanes tell two marking lines that bound one, without edges
     reach: float = setting(8.0, 0.5, 50.0, "The reach beyond the edge", "m")   # m beyond the carriageway's edge within which things are looked for
     min_length: float = setting(8.0, 2.0, 200.0, "The length of a line", "m")   # m of a rail, barrier, wall, fence or hedge
     min_height: float = setting(0.4, 0.2, 3.0, "The height of a line", "m")   # m of its top above the ground
     max_gap: float = setting(3.0, 0.5, 20.0, "The gap", "m")   # m along the road that such a line may be hidden or interrupted
     min_pole_height: float = setting(1.5, 0.8, 8.0, "The height of a pole", "m")   # m of a pole, sign or trunk
-
-    def __post_init__(self) -> None:
-        check_limits(self)
-        country(self.country)

@@ -14,15 +14,13 @@ import shapely
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import RESIDUALS, Features
 from ...core.common.progress import Progress
-from ...core.common.setting import check_limits, setting
+from ...core.common.setting import Limited, choice, setting
 from ...core.io.crs import as_in_file, check_metric, horizontal_part, parse_crs, same_crs
 from ...core.io.geotiff import GEOTIFF_TILE
 from ...core.io.local_files import gdal_exceptions, gdal_work, open_raster, unfinished_path
 from ...core.lazy import gdal, pyproj
 from .control_points import CONTROL, REQUIRED_COLUMNS, ControlPoints, SourceImage
 
-EXTRAPOLATIONS = ("automatic", "draw", "leave-out")  # of the image outside the hull of the control points
-RESAMPLINGS = ("bilinear", "nearest", "cubic")
 _SUFFICIENT_RATIO = 1.5  # times the smallest number of points: with fewer, residuals are much smaller than the errors
 _MISFIT_RESIDUAL = 5.0   # studentised residual from which a point is reported
 _NOTED_OUTSIDE_SHARE = 0.05  # of the image outside the hull of the control points, from which it is reported
@@ -33,7 +31,7 @@ _MAX_SCALE_ERROR = 0.01  # of the scale of the map projection, above which it is
 
 
 @dataclass(frozen=True)
-class GeoreferenceSettings:
+class GeoreferenceSettings(Limited):
     """How the image is georeferenced and drawn.
 
     pixel_size : m, of the result (and of the image, for a shift of an image without position); 0 = as the image
@@ -43,16 +41,9 @@ class GeoreferenceSettings:
 
     order: int = setting(2, 0, 3, "The order of the polynomial")   # of the polynomial, 1 to 3; 0 is a shift
     pixel_size: float = setting(0.0, 0.0, 999.0, "The pixel size", "m")
-    extrapolation: str = "automatic"
-    resampling: str = "bilinear"   # "bilinear", "nearest" or "cubic"
+    extrapolation: str = choice("automatic", ("automatic", "draw", "leave-out"), "The extrapolation")
+    resampling: str = choice("bilinear", ("bilinear", "nearest", "cubic"), "The resampling")
     check_disabled: bool = False   # whether disabled points are used as check points
-
-    def __post_init__(self):
-        """Check the limits of all settings, and the texts of the choices."""
-        check_limits(self)
-        for name, choices in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
-            if getattr(self, name) not in choices:
-                raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(choices)}.")
 
 
 @dataclass(frozen=True)

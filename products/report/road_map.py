@@ -10,6 +10,9 @@ import shapely
 
 from ...core.common.texts import tr, word
 from ...core.countries.catalogue import country
+from ...core.survey.store.records import Points
+from ...core.survey.store.road_points import columns_of_roads
+from .curvature import marking_curvature
 from .page import Chart, draw_map, grey_background, html_page
 
 DRAWN = "boundary_differences", "markings", "edges", "marking_lines", "driving_lines"   # layers of the overview
@@ -34,7 +37,9 @@ def road_map_report(road_map: Any, image_path: str | None = None) -> str:
     if road_map.boundary_differences is not None:
         values |= _agreement(edges, road_map.boundary_differences)
     if road_map.markings is not None:
-        values |= dict(markings=_markings(road_map.markings), marking_lines=_lengths(road_map.marking_lines, "kind", "pattern", "status"))
+        paint = Points(columns_of_roads(road_map.paint.store, road_map.paint.roads()))
+        values |= dict(markings=_markings(road_map.markings), marking_lines=_lengths(road_map.marking_lines, "kind", "pattern", "status"),
+                       curvature=marking_curvature(paint, road_map.marking_lines.geometries, road_map.frame.origin))
         values |= _driving(road_map)
     return html_page("road_map", **values)
 

@@ -28,7 +28,7 @@ NUMBERS = {
     "core/survey": 74,
     "core/road": 17,
     "core/intensity": 14,
-    "core/markings": 52,
+    "core/markings": 45,
     "core/driving": 5,
     "core/corrections": 2,
     "core/pipeline": 2,
@@ -42,7 +42,7 @@ NUMBERS = {
     "products/client_fields": 0,
     "products/assess": 18,
     "products/overlay": 77,
-    "products/report": 26,
+    "products/report": 36,
     "simulator": 151,
 }
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...common.parallel import check_cancelled
 from ...curves.robust import median
+from ...road.common.pseudo_scanlines import expand_ranges
 from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import FrameLines
 from ...survey.frame.row_table import RowSpans, RowTable
@@ -62,14 +64,24 @@ def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, patt
     width : (P,) m of paint across, NaN where unknown; or None
     """
     pieces: dict[int, dict[int, list[_PieceOfLine]]] = {}
+    plain = _plain(lines)
     for k in range(len(lines)):
         check_cancelled()
-        road, window = int(lines.road[k]), lines.line(k)
-        piece = _piece(lines.s[window], lines.d[window], lines.z[window], kind[k], pattern[k], bool(seen[k]),
-                       np.nan if width is None else float(width[k]))
-        if piece is not None:
-            pieces.setdefault(road, {}).setdefault(int(number[k]), []).append(piece)
+        window = lines.line(k)
+        places = lines.s[window], lines.d[window], lines.z[window]
+        if plain[k] or (places := _bounding(*places)) is not None:
+            pieces.setdefault(int(lines.road[k]), {}).setdefault(int(number[k]), []).append(
+                _PieceOfLine(*places, kind[k], pattern[k], bool(seen[k]), np.nan if width is None else float(width[k])))
     return {road: _on_grid(of_road) for road, of_road in sorted(pieces.items())}
+
+
+def _plain(lines):
+    """(P,) bool, lines whose stations rise throughout and that are nowhere oblique, as most are: they are as `_bounding` leaves them."""
+    owner = np.repeat(np.arange(len(lines)), np.diff(lines.start))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        steps = np.diff(lines.s)
+        unlike = ~((steps > 0) & (np.abs(np.diff(lines.d)) / steps <= SECTIONS.max_line_obliquity))
+    return (np.diff(lines.start) > 1) & (np.bincount(owner[1:], unlike & (owner[1:] == owner[:-1]), len(lines)) == 0)
 
 
 def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
@@ -135,8 +147,8 @@ def _sides_of_islands(course, island):
     return FrameLines(course.road[of], start, *(values[vertices] for values in (course.x, course.y, course.z, course.s, course.d))), np.array(of, int)
 
 
-def _piece(s, d, z, kind, pattern, seen, width):
-    """A _PieceOfLine of the vertices of a line, None where it bounds no lane."""
+def _bounding(s, d, z):
+    """Vertices of a line at rising stations, None where it bounds no lane."""
     finite = np.isfinite(s)
     if not finite.all():
         s, d, z = s[finite], d[finite], z[finite]
@@ -149,7 +161,7 @@ def _piece(s, d, z, kind, pattern, seen, width):
         s, d, z = s[rising], d[rising], z[rising]
     if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > SECTIONS.max_line_obliquity:
         return None
-    return _PieceOfLine(s, d, z, kind, pattern, seen, width)
+    return s, d, z
 
 
 def _on_grid(pieces: dict[int, list[_PieceOfLine]]) -> CrossSections:
@@ -235,33 +247,39 @@ class _GridLines:
 
 def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     """Lines of one road, given as their pieces by number, on the stations from their first to their last place."""
-    first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
-    last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
-    s = STATION_STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), median(lines[key][0].d), key))
-    names = sorted({p.pattern for pieces in lines.values() for p in pieces})
-    rows = []
-    for key in order:
-        pieces = sorted(lines[key], key=lambda p: (p.s[0], p.s[-1]))
-        longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
-        rows.append(_row_of(key, pieces, s, names, longest))
+    by_line = [sorted(lines[key], key=lambda p: (p.s[0], p.s[-1])) for key in order]
+    pieces, line = [*chain.from_iterable(by_line)], np.repeat(np.arange(len(order)), [*map(len, by_line)])
+    ends, names = np.array([(p.s[0], p.s[-1]) for p in pieces]), sorted({p.pattern for p in pieces})
+    s = STATION_STEP * np.arange(np.ceil(ends[:, 0].min() / STATION_STEP), np.floor(ends[:, 1].max() / STATION_STEP) + 1)
+    # pieces of one line touch: a grid station between their ends belongs to the line too
+    begin, end = np.searchsorted(s, ends[:, 0] - 1e-6), np.searchsorted(s, ends[:, 1] + 1e-6, side="right")
+    begins = np.flatnonzero(np.diff(line, prepend=-1))
+    first = np.minimum.reduceat(begin, begins)
+    start = np.append(0, np.cumsum(np.maximum(np.maximum.reduceat(end, begins) - first, 0)))
+    columns = _columns_on_grid(pieces, np.array(order)[line], names, s, begin, end, (start[:-1] - first)[line], int(start[-1]))
+    rows = [_GridRow(longest.kind, longest.pattern, at, {name: values[a:b] for name, values in columns.items()})
+            for longest, at, a, b in zip(map(_longest, by_line), first.tolist(), start[:-1].tolist(), start[1:].tolist())]
     return _GridLines(s, rows, names)
 
 
-def _row_of(number, pieces, s, names, longest):
-    # pieces of one line touch: a grid station between their ends belongs to the line too
-    bounds = np.array([(np.searchsorted(s, p.s[0] - 1e-6), np.searchsorted(s, p.s[-1] + 1e-6, side="right")) for p in pieces])
-    first, end = int(bounds[:, 0].min()), int(bounds[:, 1].max())
-    row = _GridRow.empty(longest.kind, longest.pattern, first, max(end - first, 0))
-    for p, (a, b) in zip(pieces, bounds.tolist()):
-        inside, grid = slice(a - first, b - first), s[a:b]
+def _longest(pieces):
+    return max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
+
+
+def _columns_on_grid(pieces, number, names, s, begin, end, shift, size):
+    """{name: (size,)} of the columns of rows one after the other: a piece stands at the stations from `begin` to before `end`, `shift` farther."""
+    columns = {name: np.full(size, missing) for name, missing in MISSING.items()}
+    of, station = expand_ranges(begin, end)
+    place, stretches = station + shift[of], [s[a:b] for a, b in zip(begin.tolist(), end.tolist())]
+    for name, of_pieces in (("drawn", map(names.index, (p.pattern for p in pieces))), ("number", number), ("width", (p.width for p in pieces))):
+        columns[name][place] = np.array([*of_pieces])[of]
+    for name in ("d", "z"):
         # to 0.1 mm, as points are: paint that changes somewhere moves a fitted line by less everywhere
-        for name, value in (("d", np.round(np.interp(grid, p.s, p.d), 4)), ("z", np.round(np.interp(grid, p.s, p.z), 4)),
-                            ("drawn", names.index(p.pattern)), ("number", number), ("width", p.width)):
-            row.columns[name][inside] = value
-        row.columns["seen"][inside] |= p.seen
-    return _GridRow(row.kind, row.pattern, first, row.columns)
+        columns[name][place] = np.round(np.concatenate([np.interp(at, p.s, getattr(p, name)) for at, p in zip(stretches, pieces)]), 4)
+    columns["seen"][place[np.array([p.seen for p in pieces])[of]]] = True
+    return columns
 
 
 def joined(lines: _GridLines) -> tuple[_GridLines, list[tuple[int, int, int]]]:

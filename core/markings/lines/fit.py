@@ -124,7 +124,7 @@ def _drawn_line(course: _Course, fit: CurveFit, wanted: bool, u: np.ndarray, hei
         line.arc.append(arc)
         line.stations.append(s)
         # heights above the trajectory go on along the road's slope
-        line.places.append(np.c_[fit.curve.at(along), height(s)])
+        line.places.append(np.column_stack([fit.curve.at(along), height(s)]))
         line.rmse.append(float(np.sqrt(np.mean(residuals**2))) if len(residuals) else np.nan)
     return line
 
@@ -223,7 +223,7 @@ def _along(road, s, d):
     """(N,) length along the line at each station: the inner side of a bend is shorter."""
     middle = (s[1:] + s[:-1]) / 2
     rate = np.maximum(1.0 - road.curvature(middle) * (d[1:] + d[:-1]) / 2, 0.1)
-    return np.r_[0.0, np.cumsum(np.maximum(np.diff(s), 1e-6) * rate)]
+    return np.append(0.0, np.cumsum(np.maximum(np.diff(s), 1e-6) * rate))
 
 
 # Lines named by the estimate of their road, and markings after the lines that they make: a dash alone does not show what it separates.
@@ -402,6 +402,6 @@ def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: i
         _, paint_offsets = one.line.near(piece.first - STRANDS.paint_beside_piece, piece.last + STRANDS.paint_beside_piece)
         yield dict(
             kind="", pattern=piece.pattern, status=piece.status,
-            curve=line.curve, arc=arc, places=np.c_[places[:, :2], places[:, 2] + track],
+            curve=line.curve, arc=arc, places=np.column_stack([places[:, :2], places[:, 2] + track]),
             station=piece.first, end=piece.last, offset=median(paint_offsets) if len(paint_offsets) else np.nan, width=one.width(piece),
             rmse=rmse if piece.status == "measured" else np.nan)

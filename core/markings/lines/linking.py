@@ -124,18 +124,24 @@ def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], 
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
-    neighbours = lines_beside(lines)
-    result = np.zeros(len(lines))
+    neighbours, result = lines_beside(lines), np.zeros(len(lines))
+    lowest, highest = _level_ranges(lines, trend)
     for k, tip in enumerate(tips):
-        for j in neighbours.between(inner[k], inner[k]).tolist():
-            if j == k:
-                continue
+        beside = neighbours.between(inner[k], inner[k])
+        within = np.maximum(lowest[beside] - tip.d, tip.d - highest[beside]) <= LINKS.double_line_spacing[1] + 1e-9   # the others lie farther away
+        for j in beside[within & (beside != k)].tolist():
             s, d = lines[j].near(inner[k] - LINKS.twin_reach, inner[k] + LINKS.twin_reach)
             if len(s):
                 offset = median(d - trend.at(s)) - tip.d
                 if LINKS.double_line_spacing[0] <= abs(offset) <= LINKS.double_line_spacing[1]:
                     result[k] = offset
     return result
+
+
+def _level_ranges(lines, trend):
+    """(2, N) m, the least and the greatest offset of each line, less drift."""
+    levels = [line.places[1] - trend.at(line.places[0]) for line in lines]
+    return np.array([(level.min(), level.max()) for level in levels]).reshape(-1, 2).T
 
 
 def _between_twins(twin_before, twin_after, before, after):

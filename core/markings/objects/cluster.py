@@ -31,14 +31,14 @@ from .grouping import connected_points
 from .marking_objects import MarkingObjects, make_marking_objects
 from .repeating import (
     Comb,
+    Crossing,
     Stripe,
     blocks_of_strip,
     comb_of_window,
     crossings_of,
     give_way_blocks,
     spots_by_place,
-    stripes_apart,
-    stripes_of_crossing,
+    stripes_of_crossings,
 )
 from .shape import Shape, drawn_outline, measure, smallest_rectangle
 from .split_merge import are_compound, join_fragments, parts_of_compound
@@ -126,8 +126,8 @@ def _striped(records: Columns, road: Road) -> Work:
     spots, windows = spots_by_place(places)
     crossings = crossings_of(spots, windows, (yield asked(combs_of_windows, partial(_at, (places,)), windows, 0.7)))
     del spots, windows
-    stripes = stripes_apart(places, way, crossings, (yield asked(
-        _zebra_stripes, partial(_at, (places, way)), [members for members, _ in crossings], 1.0, [comb for _, comb in crossings])))
+    striped = yield asked(_zebra_stripes, partial(_at, (places, way)), [rows for rows, _ in crossings], 1.0, [together for _, together in crossings])
+    stripes = [replace(stripe, spots=rows[stripe.spots]) for (rows, _), of_them in zip(crossings, striped) for stripe in of_them]
     stripe_of = np.full(len(places), -1, np.int32)
     for k, stripe in enumerate(stripes):
         stripe_of[stripe.spots] = k
@@ -329,13 +329,14 @@ def combs_of_windows(source: NoSource, item: tuple[np.ndarray, np.ndarray]) -> l
     return [comb_of_window(spots) for spots, in _clusters(item)]
 
 
-def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[Comb]]) -> list[list[Stripe]]:
+def _zebra_stripes(source: NoSource, item: tuple[np.ndarray, np.ndarray, np.ndarray, list[list[Crossing]]]) -> list[list[Stripe]]:
     """The phase that finds the stripes of crossings.
 
-    `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of the crossings, and the Comb of each.
+    `item` : (N, 2) m spots about crossings one after the other, (N,) radians of the road there, the bounds of spots that some crossings share, and
+    these crossings.
     """
-    *columns, combs = item
-    return [stripes_of_crossing(places, way, comb) for (places, way), comb in zip(_clusters(columns), combs)]
+    *columns, crossings = item
+    return [stripes_of_crossings(places, way, together) for (places, way), together in zip(_clusters(columns), crossings)]
 
 
 def pieces_of_clusters(source: NoSource, item: tuple[Any, ...]) -> list[tuple[np.ndarray | None, list[Shape]]]:

@@ -58,8 +58,11 @@ class Stripe:
 Crossing = tuple[np.ndarray, Comb]   # rows of the spots about a crossing, and the clearest comb of its windows
 
 
-def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs: Sequence[Comb | None]) -> list[Crossing]:
-    """The crossings that windows of spots, given by their rows, show by what `comb_of_window` finds in each."""
+def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs: Sequence[Comb | None]) -> list[tuple[np.ndarray, list[Crossing]]]:
+    """The crossings that windows of spots, given by their rows, show by what `comb_of_window` finds in each.
+
+    Those about which the same spots lie come together: the rows of their spots, and the crossings, whose rows are among these.
+    """
     combs = [comb for comb in window_combs if comb is not None]
     rows = [members for members, comb in zip(windows, window_combs) if comb is not None]
     crossings: list[Crossing] = []
@@ -67,21 +70,29 @@ def crossings_of(spots: PlaceIndex, windows: Sequence[np.ndarray], window_combs:
         check_cancelled()
         best = max((combs[k] for k in group), key=lambda comb: comb.coherence)
         crossings.append((_about(spots, np.unique(np.concatenate([rows[k] for k in group])), best.heading), best))
-    return crossings
+    return _sharing_spots(crossings, len(spots.places))
 
 
-def stripes_apart(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing], stripe_lists: Sequence[list[Stripe]]) -> list[Stripe]:
-    """The stripes of all crossings of a road, each spot on one of them; `stripe_lists` : what `stripes_of_crossing` finds of each."""
+def _sharing_spots(crossings, spots):
+    """What `crossings_of` gives of crossings about so many spots."""
+    number = len(crossings)
+    of, about = np.repeat(np.arange(number), [len(members) for members, _ in crossings]), [members for members, _ in crossings]
+    groups, result = linked_groups(of, number + np.concatenate([np.empty(0, int), *about]), number + spots)[:number], []
+    for _, group in members_of(groups):
+        rows = np.unique(np.concatenate([about[k] for k in group]))
+        result.append((rows, [(np.searchsorted(rows, about[k]), crossings[k][1]) for k in group]))
+    return result
+
+
+def stripes_of_crossings(places: np.ndarray, way: np.ndarray, crossings: Sequence[Crossing]) -> list[Stripe]:
+    """The stripes of some crossings, each spot on one of them: a crossing has what those before it left. `places`, `way` : as of one crossing."""
     result, unused = [], np.ones(len(places), bool)
-    for (members, best), stripes in zip(crossings, stripe_lists):
-        if not unused[members].all():
-            # one before it has taken some of its spots
-            check_cancelled()
-            members = members[unused[members]]
-            stripes = stripes_of_crossing(places[members], way[members], best)
-        stripes = [replace(stripe, spots=members[stripe.spots]) for stripe in stripes]
-        unused[np.concatenate([np.empty(0, np.int64), *(stripe.spots for stripe in stripes)])] = False
-        result += stripes
+    for about, comb in crossings:
+        check_cancelled()
+        members = about[unused[about]]
+        for stripe in stripes_of_crossing(places[members], way[members], comb):
+            result.append(replace(stripe, spots=members[stripe.spots]))
+            unused[result[-1].spots] = False
     return result
 
 

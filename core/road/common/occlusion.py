@@ -72,8 +72,7 @@ class OcclusionGrid:
         offsets = cell[:, None] + np.arange(-1, 2)
         inside = (offsets >= 0) & (offsets < self.cells)
         heights = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)]
-        with np.errstate(invalid="ignore"):
-            measured = inside & (np.abs(heights - h[:, None]) < CURBS.max_bottom_difference)
+        measured = inside & (np.abs(heights - h[:, None]) < CURBS.max_bottom_difference)
         # a summed-area table gives the tall cells of any rectangle in four look-ups
         sums = np.zeros((rows + 1, self.cells + 1), np.int32)
         np.cumsum(np.cumsum(self.tall, 0, np.int32), 1, np.int32, out=sums[1:, 1:])
@@ -88,8 +87,7 @@ class OcclusionGrid:
         """(N,) bool, whether the road before a place returned nothing and the ground behind it is raised like the top of a curb."""
         offsets = cell[:, None] + np.arange(-CURBS.water_cells, CURBS.water_cells)
         rise = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)] - h[:, None]
-        with np.errstate(invalid="ignore"):
-            measured = np.abs(rise) < CURBS.max_bottom_difference
-            raised = measured & (rise > CURBS.least_water_step)
+        measured = np.abs(rise) < CURBS.max_bottom_difference
+        raised = measured & (rise > CURBS.least_water_step)
         return ((offsets[:, 0] > 0) & ~measured[:, :CURBS.water_cells].any(1) & raised[:, CURBS.water_cells:].any(1)
                 & ~(measured & ~raised)[:, CURBS.water_cells:].any(1))

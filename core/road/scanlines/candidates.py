@@ -118,8 +118,7 @@ def _rising(low, span, least):
         before.reshape(-1)[empty] = height
         missed = np.isnan(height)
         empty, column = empty[missed], column[missed]
-    with np.errstate(invalid="ignore"):
-        rising = (top - before > 0.5 * least) & (low > before)
+    rising = (top - before > 0.5 * least) & (low > before)
     indices = np.flatnonzero(rising)
     row = indices // low.shape[1]
     return row, indices - row * low.shape[1], before.reshape(-1)[indices], top.reshape(-1)[indices]
@@ -136,8 +135,7 @@ def _stays_up(low, candidates):
     cells = candidates.cell[:, None] + np.arange(first, last + 1)
     heights = np.where(cells < low.shape[1], low[candidates.row[:, None], np.minimum(cells, low.shape[1] - 1)], np.nan)
     occupied = np.isfinite(heights).sum(1)
-    with np.errstate(invalid="ignore"):
-        sunk = (heights < (candidates.base + 0.5 * candidates.step)[:, None]).sum(1)
+    sunk = (heights < (candidates.base + 0.5 * candidates.step)[:, None]).sum(1)
     return (occupied >= SCANLINE.min_cells_behind) & (sunk <= SCANLINE.max_sunk_share * occupied)
 
 

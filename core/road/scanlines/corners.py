@@ -202,8 +202,7 @@ def _corners_with_face(near, which, least_slope):
     good &= top.steepness() <= lean
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
-    with np.errstate(invalid="ignore"):
-        good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.limits.least_height) & (top_h - bottom_h <= settings.clipping_height))
+    good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.limits.least_height) & (top_h - bottom_h <= settings.clipping_height))
     for points, plane, at_u, at_h in ((ground_points, ground, bottom_u, bottom_h), (front_points, front, bottom_u, bottom_h),
                                       (front_points, front, top_u, top_h), (top_points, top, top_u, top_h)):
         good &= _distance(u, h, points, plane.points, at_u, at_h) <= SCANLINE.max_corner_distance

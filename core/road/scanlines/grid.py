@@ -114,8 +114,7 @@ def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], in
     height += base.take(owner)
     flat = low.reshape(-1)
     _lower_to(flat, index, height.astype(np.float32))
-    with np.errstate(invalid="ignore"):
-        flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
+    flat[(flat > clipping_height) | (flat <= -SCANLINE.max_ground_depth)] = np.nan
     return grid
 
 

@@ -189,10 +189,9 @@ def street_ground(cells: GroundCells, ground: np.ndarray, right: np.ndarray, lef
     Returns (R, C) bool
     """
     offsets = cells.offsets
-    with np.errstate(invalid="ignore"):
-        inside = (offsets > right[:, None]) & (offsets < left[:, None]) & np.isfinite(cells.rough)
-        usual = np.median(cells.rough[inside]) if inside.any() else 0.0
-        return ground & ~(cells.rough > SURFACE.roughness_factor * usual + SURFACE.roughness_floor)
+    inside = (offsets > right[:, None]) & (offsets < left[:, None]) & np.isfinite(cells.rough)
+    usual = np.median(cells.rough[inside]) if inside.any() else 0.0
+    return ground & ~(cells.rough > SURFACE.roughness_factor * usual + SURFACE.roughness_floor)
 
 
 def cells_driven(frame: RoadFrame, road: int, cells: GroundCells) -> np.ndarray:

@@ -29,8 +29,7 @@ class HalfProfiles:
         """Cells of obstacles are no ground."""
         low = np.isfinite(self.off) & (np.abs(self.off) < SURFACE.max_height_deviation)
         follows = _ahead(np.pad(low, ((0, 0), (0, 1)))[:, 1:], SURFACE.obstacle_cells, fill=False).any(axis=2)
-        with np.errstate(invalid="ignore"):
-            self.off = np.where((self.off > SURFACE.obstacle_height) & follows, np.nan, self.off)
+        self.off = np.where((self.off > SURFACE.obstacle_height) & follows, np.nan, self.off)
 
     def changes(self, beside: np.ndarray, max_width: float) -> np.ndarray:
         """(P,) int, the first cell of other ground, or the one at the largest width; -1 where nothing was measured before it.
@@ -85,8 +84,7 @@ class HalfProfiles:
         if np.isfinite(off[behind]).mean() < SURFACE.min_measured_behind \
                 or (np.abs(off[behind]) > SURFACE.max_height_deviation + SURFACE.unevenness_factor * uneven).any():
             return 0
-        with np.errstate(invalid="ignore"):
-            smooth = known_median(rough[behind], 0) <= SURFACE.roughness_factor * known_median(rough[inner], 0) + SURFACE.roughness_floor
+        smooth = known_median(rough[behind], 0) <= SURFACE.roughness_factor * known_median(rough[inner], 0) + SURFACE.roughness_floor
         return resumed if smooth else 0
 
 
@@ -112,18 +110,17 @@ def _differs(u, off, rough, uneven):
     measured = np.isfinite(ahead)
     count = measured.sum(axis=2)
     slack = SURFACE.unevenness_factor * uneven[:, None]
-    with np.errstate(invalid="ignore"):
-        deviates = np.abs(ahead) > SURFACE.max_height_deviation + slack[..., None]
-        high = (count > 1) & deviates[..., 0] & (deviates.sum(axis=2) > SURFACE.min_agreeing_share * count)
-        # the step may cut the first cell that was measured
-        stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > SURFACE.max_height_change + slack[..., None]) \
-            | ~measured | (np.cumsum(measured, axis=2) == 1)
-        step = (count > 2) & (np.isfinite(before).sum(axis=2) > 2) & stepped.all(axis=2)
-        rough_ahead, usual = _ahead(rough, SURFACE.min_change_cells), _before(rough, SURFACE.cells_of_roughness)
-        rougher = rough_ahead > (SURFACE.roughness_factor * known_median(usual, 2) + SURFACE.roughness_floor)[..., None]
-        rough_count = np.isfinite(rough_ahead).sum(axis=2)
-        rugged = (rough_count > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] \
-            & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * rough_count)
+    deviates = np.abs(ahead) > SURFACE.max_height_deviation + slack[..., None]
+    high = (count > 1) & deviates[..., 0] & (deviates.sum(axis=2) > SURFACE.min_agreeing_share * count)
+    # the step may cut the first cell that was measured
+    stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > SURFACE.max_height_change + slack[..., None]) \
+        | ~measured | (np.cumsum(measured, axis=2) == 1)
+    step = (count > 2) & (np.isfinite(before).sum(axis=2) > 2) & stepped.all(axis=2)
+    rough_ahead, usual = _ahead(rough, SURFACE.min_change_cells), _before(rough, SURFACE.cells_of_roughness)
+    rougher = rough_ahead > (SURFACE.roughness_factor * known_median(usual, 2) + SURFACE.roughness_floor)[..., None]
+    rough_count = np.isfinite(rough_ahead).sum(axis=2)
+    rugged = (rough_count > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] \
+        & (rougher.sum(axis=2) > SURFACE.min_agreeing_share * rough_count)
     return high | step | rugged | _turns(u, off, slack)
 
 
@@ -139,11 +136,10 @@ def _turns(u, off, slack):
     _, tilt = _lines(at_after, rise, a)
     # most cells, not a single one beside an obstacle
     typical = known_median(rise / (at_after + 0.5 * size), 2)
-    with np.errstate(invalid="ignore"):
-        # the bank may begin farther out
-        begins = np.abs(rise[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
-        return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
-            & (np.minimum(np.abs(typical), np.abs(tilt)) > SURFACE.min_tilt_change)
+    # the bank may begin farther out
+    begins = np.abs(rise[..., 0]) >= 0.5 * SURFACE.min_tilt_change * size + slack
+    return (b.sum(axis=2) >= SURFACE.min_cells_of_tilt[0]) & (a.sum(axis=2) >= SURFACE.min_cells_of_tilt[1]) & a[..., 0] & begins \
+        & (np.minimum(np.abs(typical), np.abs(tilt)) > SURFACE.min_tilt_change)
 
 
 def _lines(at, values, known):

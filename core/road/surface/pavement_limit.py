@@ -58,8 +58,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
     limit = _along(total, change_cell)
     window = SURFACE.road_cells + np.arange(-SURFACE.cells_inside, SURFACE.cells_outside)
     window = np.clip(limit, 0, SURFACE.inner_cells + SURFACE.outer_cells)[:, None] + window
-    with np.errstate(invalid="ignore"):
-        ground = np.abs(height) < SURFACE.max_ground_height
+    ground = np.abs(height) < SURFACE.max_ground_height
     costs, measured_rows, own_rows, ground = (np.take_along_axis(values, window, 1)
                                               for values in (np.where(ground, costs, 0.0), measured_rows, own_rows, ground))
     inside, outside = slice(SURFACE.cells_inside), slice(SURFACE.cells_inside, None)

@@ -86,10 +86,9 @@ class RoadLook:
         beside = np.abs(self._step_at(s, u - CURBS.road_beside)[0])
         behind = self._off_road(s, u + CURBS.ramp_length)
         noise = MAD_TO_SIGMA * _median_about(beside) / np.sqrt(CURBS.lowered_rows)
-        with np.errstate(invalid="ignore"):
-            shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
-            climbs = (_median_about(height) >= CURBS.least_climb) & (_median_about(behind) >= EDGE.lowered_share * full)
-            return (shown & (step > 0.0) | climbs) & (height > 0.0) & (height <= full), height, bottom
+        shown = _median_about(step) >= np.maximum(CURBS.least_lowered_step, CURBS.significant_sigmas * noise)
+        climbs = (_median_about(height) >= CURBS.least_climb) & (_median_about(behind) >= EDGE.lowered_share * full)
+        return (shown & (step > 0.0) | climbs) & (height > 0.0) & (height <= full), height, bottom
 
     def level_to(self, s: np.ndarray, u: np.ndarray, end_s: float, end_u: float) -> np.ndarray:
         """(N,) bool, is the ground seen, and as high as the road, on the straight way from (N,) places to one?
@@ -99,8 +98,7 @@ class RoadLook:
         share = np.linspace(0.0, 1.0, SURFACE.places_between)[:, None]
         off = self._off_road(s + share * (end_s - s), u + share * (end_u - u))
         seen = np.isfinite(off)
-        with np.errstate(invalid="ignore"):
-            level = np.abs(off) < SURFACE.max_height_deviation
+        level = np.abs(off) < SURFACE.max_height_deviation
         return (seen.mean(0) >= SURFACE.min_seen_between) & (level.sum(0) >= SURFACE.min_level_between * seen.sum(0))
 
     def _at(self, values, s, u):

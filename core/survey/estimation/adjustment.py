@@ -56,8 +56,7 @@ def _adjust_poses(poses: Poses, guess: Poses, crossfall: np.ndarray, returns: Re
         change, common, covariance, follow = equations.solve()
         turn, lean, *lever = common.reshape(-1, MOUNTING).T
         poses = replace(poses, control=poses.control + change, turn=poses.turn + turn, lean=poses.lean + lean, lever=poses.lever + np.array(lever).T)
-        with np.errstate(invalid="ignore"):
-            calm = np.fmin(noise, np.maximum(RAYS.noise_of_misfit * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), RAYS.least_noise))
+        calm = np.fmin(noise, np.maximum(RAYS.noise_of_misfit * np.sqrt(np.maximum(misfit**2 - by_rounding**2, 0.0)), RAYS.least_noise))
         settled = np.nanmax(noise / calm) < RAYS.settled and np.abs(change[:, :3]).max() < RAYS.converged
         noise = calm
         progress.report((number + 1) / RAYS.rounds)
@@ -171,8 +170,7 @@ def grown_poses(poses: Poses, known: np.ndarray, returns: Returns, progress: Pro
         part = progress.part(number / (RAYS.max_growths + 2), (number + 1) / (RAYS.max_growths + 2))
         adjusted = _adjust_poses(poses, guess, crossfall, sample[known[sample.interval, sample.scanner]], noise, part)
         limit = max(RAYS.max_ray_misfit, RAYS.max_times_usual * adjusted.usual)
-        with np.errstate(invalid="ignore"):
-            good = known & (adjusted.misfit <= limit)
+        good = known & (adjusted.misfit <= limit)
         fresh = _reached(adjusted.poses, good) & held & ~good & (tries < RAYS.max_tries)
         poses = _carried_on(adjusted.poses, good)
         crossfall = _crossfall_of(poses, sample[good[sample.interval, sample.scanner]])

@@ -63,8 +63,9 @@ class ArrayFile:
                 if os.fstat(self._file.fileno()).st_size < end:
                     raise OSError(f"{self._file.name} ends early, before byte {end:,}")
                 self._map = mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ)
+                _mapped.follow(self)
             mapped = self._map
-        _mapped.add(self, end - place)
+        _mapped.count(end - place)
         return np.frombuffer(mapped, dtype, count, place)
 
     # pwrite leaves the file's position alone, so threads may use it together; Windows lacks it
@@ -106,9 +107,12 @@ class _MappedPages:
     def __init__(self) -> None:
         self._lock, self._files, self._nbytes = threading.Lock(), weakref.WeakSet[ArrayFile](), 0
 
-    def add(self, file: ArrayFile, nbytes: int) -> None:
+    def follow(self, file: ArrayFile) -> None:
         with self._lock:
             self._files.add(file)
+
+    def count(self, nbytes: int) -> None:
+        with self._lock:
             self._nbytes += nbytes
             if self._nbytes <= STORE.mapped_bytes:
                 return

@@ -286,10 +286,9 @@ def _is_sbet(path):
         return False
     usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES
     rows = np.frombuffer(head, "<f8", usable).reshape(-1, SBET_DOUBLES)
-    with np.errstate(invalid="ignore"):
-        return bool(np.isfinite(rows[:, :4]).all() and (np.abs(rows[:, 1]) <= np.pi / 2).all()
-                    and (np.abs(rows[:, 2]) <= 2 * np.pi).all() and (rows[:, 0] >= 0).all()
-                    and (np.diff(rows[:, 0]) > 0).mean() > 0.9)
+    return bool(np.isfinite(rows[:, :4]).all() and (np.abs(rows[:, 1]) <= np.pi / 2).all()
+                and (np.abs(rows[:, 2]) <= 2 * np.pi).all() and (rows[:, 0] >= 0).all()
+                and (np.diff(rows[:, 0]) > 0).mean() > 0.9)
 
 
 def _read_sbet(path, crs):
@@ -352,9 +351,8 @@ def _beside(sbet):
 
 def _tell_accuracy(rows, time):
     """Whether (N, 10) numbers are those of an accuracy file for some of the times."""
-    with np.errstate(invalid="ignore"):
-        return len(rows) > 1 and np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and rows[0, 0] < time[-1] and time[0] < rows[-1, 0] \
-            and ((rows[:, 1:4] >= 0) & (rows[:, 1:4] < TRAJECTORY.worst_accuracy)).all()
+    return len(rows) > 1 and np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all() and rows[0, 0] < time[-1] and time[0] < rows[-1, 0] \
+        and ((rows[:, 1:4] >= 0) & (rows[:, 1:4] < TRAJECTORY.worst_accuracy)).all()
 
 
 def _records(path, doubles):

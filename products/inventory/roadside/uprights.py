@@ -438,8 +438,7 @@ def _feet_in_shadow(low, least):
     """Heights where the foot of a face that a shadow hides, as of a parked car, is the least that nearby slices see of it."""
     padded = np.pad(low, ((0, 0), (1, 1)), constant_values=np.nan)
     right, left = padded[:, :-2], padded[:, 2:]
-    with np.errstate(invalid="ignore"):
-        shadowed = np.isnan(right) & ~(left - low < RIM_STEP) | np.isnan(left) & ~(right - low < RIM_STEP)
+    shadowed = np.isnan(right) & ~(left - low < RIM_STEP) | np.isnan(left) & ~(right - low < RIM_STEP)
     lowest = np.where(np.isnan(low), np.inf, np.where(shadowed, least, low))
     foot = minimum_filter1d(lowest, 2 * SHADOW_SLICES + 1, axis=0, mode="constant", cval=np.inf)
     return np.where(shadowed & (low - foot > GROUND_JUMP), foot, low)
@@ -476,9 +475,8 @@ def _rims(low):
     cells = np.column_stack([np.full(rows, np.nan), low]).ravel()   # a gap between the rows
     finite = np.isfinite(cells)
     step = np.diff(cells, append=np.nan)
-    with np.errstate(invalid="ignore"):
-        breaks = ~(np.abs(step) < RIM_STEP)          # after a cell: a step, or nothing known on one side
-        up, down = step >= RIM_STEP, step <= -RIM_STEP
+    breaks = ~(np.abs(step) < RIM_STEP)          # after a cell: a step, or nothing known on one side
+    up, down = step >= RIM_STEP, step <= -RIM_STEP
     group = np.cumsum(np.r_[True, breaks[:-1]]) - 1
     first = np.flatnonzero(np.r_[True, breaks[:-1]])
     last = np.r_[first[1:] - 1, len(cells) - 1]

@@ -116,7 +116,7 @@ def test_a_moved_line_takes_its_name_and_the_lanes_alone_and_is_never_that_of_an
     assert found[0] != found[1]
     monkeypatch.undo()
     assert [made(street, tmp_path, corrections=corrections)[0] for corrections in moved] == found
-    without(monkeypatch, (*SURFACE, "fit_marking_lines", "named_by_estimate", "make_driving_lines", "marking_curvature"))
+    without(monkeypatch, (*SURFACE, "fit_marking_lines", "named_by_estimate", "make_driving_lines"))
     assert made(street, tmp_path, kept, moved[0])[0] == found[0]
 
 

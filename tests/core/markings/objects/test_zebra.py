@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from clustered_marks import FRAME, classes, layer_of
-from lanewright.core.markings.objects.repeating import comb_of_window, crossings_of, spots_by_place, stripes_apart, stripes_of_crossing
+from lanewright.core.markings.objects.repeating import comb_of_window, crossings_of, spots_by_place, stripes_of_crossings
 from painted_streets import paint, road_points, strip
 
 STRIPES = [strip(-2.0, 2.0, d, d + 0.5) for d in np.arange(-3.0, 3.0, 1.0)]   # 4 m long, a metre apart
@@ -22,7 +22,7 @@ def spots(marks, turned=0.0, tracks=0.35, kept=0.6, seed=4):
 def crossings_in(places):
     way, (by_place, windows) = np.zeros(len(places)), spots_by_place(places)
     crossings = crossings_of(by_place, windows, [comb_of_window(places[members]) for members in windows])
-    return stripes_apart(places, way, crossings, [stripes_of_crossing(places[members], way[members], comb) for members, comb in crossings])
+    return [stripe for rows, together in crossings for stripe in stripes_of_crossings(places[rows], way[rows], together)]
 
 
 @pytest.mark.parametrize("turned", [0, 17, 45, 90, 128])

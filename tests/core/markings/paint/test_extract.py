@@ -158,7 +158,7 @@ def test_sun_between_the_shadows_of_cars_and_leaves_is_no_paint_and_a_line_that_
     assert len(np.unique(found.s[on_line] // 0.5)) >= 98
 
 
-@pytest.mark.parametrize("darker, brighter, width", [(2.0, 1.15, 0.4), (3.0, 1.5, 0.2)])
+@pytest.mark.parametrize("darker, brighter, width", [(2.0, 1.15, 0.4), (4.0, 1.5, 0.2)])
 def test_a_strip_of_asphalt_in_the_shade_that_is_a_little_brighter_or_half_in_the_sun_is_no_paint_in_photographs(tmp_path, darker, brighter, width):
     """It lies far from asphalt in the sun, as paint in the shade does, and is near to asphalt in the shade or darker than the sun nearby."""
     line, strip_in_shade = strip(5, 55, 1.0, 1.15), strip(30, 33, -2.0, width - 2.0)

@@ -10,22 +10,24 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ...common.parallel import check_cancelled
-from ...curves.line_segments import SegmentIndex, single_lines
-from ...survey.store.records import Points
-from ..weights import STRANDS
+from ...core.common.parallel import check_cancelled
+from ...core.curves.line_segments import SegmentIndex, single_lines
+from ...core.survey.store.records import Points
 
 CURVATURE_KERNEL = 0.2   # source: m, radius of the neighbourhood, as in the driving-line thesis
 MAX_CANDIDATES = 1800   # derived: marking points, evenly spread, that are tested for being beside a line,
 MAX_CURVATURE_POINTS = 600   # derived: and of which so many have their curvature computed
 MIN_KERNEL_POINTS = 12   # derived: neighbours, twice the coefficients of a quadric
+MAX_PAINT_DISTANCE = 0.25   # m from a fitted line within which a point is its paint
+MIN_WIDTH_RATIO = 0.03   # of the variances along the second and the first principal direction: below, neighbours lie in a line
+MAX_QUADRIC_CONDITION = 1e3   # condition number of the normal equations of the quadric
 KERNELS_PER_BATCH = 100   # derived: neighbourhoods solved at a time
 HASHED_CELLS = 2**20   # derived: hash values of cells of the kernel's size
 POINTS_LOOKED_AT = 2**18   # derived: marking points looked at together
 
 
 @dataclass(frozen=True)
-class MarkingCurvature:
+class _MarkingCurvature:
     """Mean absolute mean curvature of marking points in a kernel of 0.2 m."""
 
     before: float   # of the points as measured, 1/m
@@ -33,7 +35,7 @@ class MarkingCurvature:
     points: int   # number of points
 
 
-def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
+def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[float]) -> _MarkingCurvature | None:
     """Roughness of line markings before and after fitting.
 
     The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own plane, as point cloud software
@@ -43,7 +45,7 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     lines : fitted lines with Z in map coordinates
     origin : (3,) map coordinates of the local origin
 
-    Returns MarkingCurvature, or None without a line or with too few points beside one
+    Returns _MarkingCurvature, or None without a line or with too few points beside one
     """
     lines, _ = single_lines(lines)
     if not lines or not len(points):
@@ -54,7 +56,7 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     rows = _spread(len(points), MAX_CANDIDATES)
     candidates = points[rows]
     nearest = segments.nearest(np.c_[candidates.x, candidates.y])
-    on_lines = np.flatnonzero((nearest.distance <= STRANDS.max_paint_distance) & np.isfinite(nearest.z))
+    on_lines = np.flatnonzero((nearest.distance <= MAX_PAINT_DISTANCE) & np.isfinite(nearest.z))
     if len(on_lines) < MIN_KERNEL_POINTS:
         return None
     on_lines = on_lines[_spread(len(on_lines), MAX_CURVATURE_POINTS)]
@@ -65,7 +67,7 @@ def marking_curvature(points: Points, lines: Sequence[Any], origin: Sequence[flo
     finite = np.isfinite(before) & np.isfinite(after)
     if not finite.any():
         return None
-    return MarkingCurvature(float(np.abs(before[finite]).mean()), float(np.abs(after[finite]).mean()), int(finite.sum()))
+    return _MarkingCurvature(float(np.abs(before[finite]).mean()), float(np.abs(after[finite]).mean()), int(finite.sum()))
 
 
 def _spread(count, most):
@@ -108,7 +110,7 @@ def _before_and_after(xyz, which, nearest, segments):
         owner, member = np.repeat(np.arange(len(rows)), [len(members) for members in around]), np.concatenate(around).astype(int)
         centre = rows[owner]
         step = xyz[member, :2] - nearest.xy[centre]
-        along_line = np.abs(step[:, 1] * ahead[centre, 0] - step[:, 0] * ahead[centre, 1]) <= STRANDS.max_paint_distance
+        along_line = np.abs(step[:, 1] * ahead[centre, 0] - step[:, 0] * ahead[centre, 1]) <= MAX_PAINT_DISTANCE
         owner, member, centre, step = owner[along_line], member[along_line], centre[along_line], step[along_line]
         count = np.bincount(owner, minlength=len(rows))
         offsets = xyz[member] - xyz[which[centre]]
@@ -144,6 +146,6 @@ def _quadrics(off, count):
     _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T
     fx, fy, fxx, fxy, fyy = b / radius, c / radius, 2 * d / radius**2, e / radius**2, 2 * g / radius**2
     bend = ((1 + fx**2) * fyy - 2 * fx * fy * fxy + (1 + fy**2) * fxx) / (2 * (1 + fx**2 + fy**2)**1.5)
-    wide = values[:, 1] > STRANDS.min_width_ratio * np.maximum(values[:, 2], 1e-12)
-    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < STRANDS.max_quadric_condition)
+    wide = values[:, 1] > MIN_WIDTH_RATIO * np.maximum(values[:, 2], 1e-12)
+    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < MAX_QUADRIC_CONDITION)
     return np.where(enough, bend, np.nan)

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.lines.curvature import CURVATURE_KERNEL, _quadrics, marking_curvature
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import Points, to_units
+from lanewright.products.report.curvature import CURVATURE_KERNEL, _quadrics, marking_curvature
 from scipy.spatial import cKDTree
 from shapely.geometry import LineString
 
