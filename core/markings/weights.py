@@ -412,8 +412,8 @@ class NOISY:
 class PHOTOGRAPHS:
     """Paint where brightness comes from photographs: the level of the ground, its scatter, and which bright pieces are other ground.
 
-    The nats lie between logistic regressions over pieces of four and of two simulated streets in the brightness of photographs with shadows of trees,
-    houses and cars, seams, crossfall of light, displaced images and the colour of cars beside them; other streets and other light were kept aside.
+    The nats lie near logistic regressions over pieces, by what is found and invented on four simulated streets in the brightness of photographs with
+    shadows of trees, houses and cars, seams, crossfall of light, displaced images and the colour of cars beside them; others were kept aside.
     """
 
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
@@ -427,6 +427,7 @@ class PHOTOGRAPHS:
     least_scatter: float = 0.01   # of the brightness of asphalt, where values are coarse
     beside: tuple[int, int] = 3, 1   # cells from a piece: what lies beside it, less what the image blurs
     most_fading: float = 0.6   # of the brightness of a piece that counts as left beside it
+    rim_cells: float = 2.0   # standard deviation over which the rim of a piece is evened out, as single cells of it are bright by chance
     most_elongated: float = 3.0   # of the logarithm of length over breadth that counts: curbs along the rim are as long as lines
     sun_squares: float = 8.0   # squares of 20 cm: standard deviation of the mean that tells how bright asphalt in the sun is nearby
     two_levels: float = 0.72   # of the variance, between shade and sun: of one level that scatters it is two thirds
@@ -434,9 +435,9 @@ class PHOTOGRAPHS:
     usual_cells: int = 600   # by so many cells: 1 m2
     rim_reach: float = 0.15   # m from the rim of the road in which its effect falls to a third
     # of the share of its brightness left beside a piece, and of its contrast with its darker side left on the other; of the logarithm of length over
-    # breadth; of nearness of the rim; of how much brighter the sun nearby is, as most flecks of it in the shade are dimmer; of nearness to paint
-    # and not to asphalt. Without any of them a piece may be either
-    nats: tuple[float, ...] = -3.0, -2.5, 0.9, -7.0, -4.0, 4.4
+    # breadth, by its rim; of nearness of the rim of the road; of how much brighter the sun nearby is, as most flecks of it in the shade are dimmer;
+    # of nearness to paint and not to asphalt. Without any of them a piece may be either
+    nats: tuple[float, ...] = -3.0, -2.0, 1.0, -7.0, -4.5, 4.4
 
 
 @table

@@ -64,21 +64,19 @@ def _light(brightness, ground, bright):
 
 
 def _are_paint(z, above, sunnier, light, bright, rim, labels):
-    """(pieces,) bool, whether pieces are paint, by a logistic regression, and not sunlit, dimmer than sun nearby, one-sided, round, or at the rim.
+    """(pieces,) bool, whether pieces are paint, by a logistic regression, and not sunlit, dimmer than sun nearby, one-sided, ragged, or at the rim.
 
     labels : as in `clear_pieces`; rim : (rows, columns) m to it; above : (rows, columns) brightness in spreads; the others as of `bright_spots`
     """
     numbers = np.arange(1, int(labels.max()) + 1)
     (_, left, usual), (darker, brighter, middle) = (np.nan_to_num(beside_pieces(values, labels, bright, PHOTOGRAPHS.beside)) for values in (z, above))
-    cells = np.array(np.nonzero(labels))
-    of = labels[tuple(cells)]
-    places = [place - ndimage.mean(place, of, numbers)[of - 1] for place in cells]
-    moments = np.array([[ndimage.mean(a * b, of, numbers) for a in places] for b in places])
-    # a single cell is as broad as long
-    across, along = np.linalg.eigvalsh(moments.transpose(2, 0, 1)).T + 1 / 12
+    # lengths of rim that run one way and across it: stripes alike stay as long for their breadth where a fleck of sun joins them
+    slopes = np.gradient(cv2.GaussianBlur((labels > 0).astype(np.float32), (0, 0), PHOTOGRAPHS.rim_cells))
+    moments = np.array([[ndimage.mean(a * b, labels, numbers) for a in slopes] for b in slopes])
+    across, along = np.linalg.eigvalsh(moments.transpose(2, 0, 1)).T + 1e-6
     features = (np.clip(left / np.maximum(usual, 1.0), 0.0, PHOTOGRAPHS.most_fading),
                 np.clip((brighter - darker) / np.maximum(middle - darker, 1.0), 0.0, 1.0),
-                np.minimum(np.log(along / across) / 2, PHOTOGRAPHS.most_elongated),
+                np.minimum(np.log(along / across), PHOTOGRAPHS.most_elongated),
                 np.exp(-ndimage.mean(rim, labels, numbers) / PHOTOGRAPHS.rim_reach),
                 *(ndimage.mean(np.nan_to_num(of), np.where(bright, labels, 0), numbers) for of in (sunnier, light)))
     return np.transpose(features) @ PHOTOGRAPHS.nats > 0.0

@@ -169,6 +169,18 @@ def test_a_strip_of_asphalt_in_the_shade_that_is_a_little_brighter_or_half_in_th
     assert len(np.unique(found.s // 0.5)) >= 98
 
 
+def test_a_row_of_stripes_in_the_shade_is_paint_in_photographs_where_a_fleck_of_sun_joins_them(tmp_path):
+    """Together they are as broad as long, and darker than the sun nearby; each of them is long and straight."""
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    stripes = (np.abs(s - 31.5) < 1.5) & (np.abs(d) < 2.75) & ((d + 8.25) % 1.0 < 0.5)
+    fleck = (np.abs(s - 31.5) < 0.15) & (np.abs(d) < 2.75)
+    lit = np.where((np.abs(s - 32) > 10) | fleck, 1.5, 1.0)
+    bright = np.where(stripes, 1.5, 1.0) * ASPHALT * grained(s, d, 0.03, 5) * lit / 1.5
+    found = found_on(records_at(FRAME, s, d, bright, 4.0), tmp_path)
+    on_stripes = (np.abs(found.s - 31.5) < 1.55) & ((found.d + 8.3) % 1.0 < 0.6)
+    assert len(np.unique([found.s[on_stripes] // 0.5, found.d[on_stripes] // 1.0], axis=1).T) >= 36
+
+
 @pytest.mark.parametrize("way", [1, -1])
 def test_worn_stripes_are_paint_in_photographs_of_unequal_exposure_that_darken_to_one_side(tmp_path, way):
     exposure = np.array([0.0, 0.2, -0.15, 0.1, -0.2, 0.05, 0.2, -0.1, 0.0, 0.15, -0.2, 0.1, 0.0, 0.2, -0.1])
