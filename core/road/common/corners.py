@@ -102,7 +102,7 @@ def _step_evidence(owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarra
     """
     kept = np.flatnonzero((np.abs(u) > CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin) & (u < CURBS.behind_length))
     owner, u, s, h = (v.take(kept) for v in (owner, u, s, h))
-    terms = h, np.ones(len(h)), u, s, u > 0.0, np.maximum(u, 0.0), np.clip(0.5 + 0.5 * u / CURBS.face_search_half_width, 0.0, 1.0)
+    terms = h, np.ones(len(h)), u, s, u > 0.0, np.maximum(u, 0.0), np.clip(u / CURBS.behind_length + 0.5, 0.0, 1.0)
     moments = np.array([[np.bincount(owner, one * other, len(scanner_noise)) for other in terms] for one in terms])
     n = np.maximum(moments[1, 1], 1.0)
     for k in (1, 2, 3):   # what the plane explains is taken out of the others
