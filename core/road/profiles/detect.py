@@ -100,7 +100,8 @@ def _with_wider_profiles(steps, lines, section, settings):
     points, count = uniform_filter1d(lines.count.mean(0), round(CURBS.thin_width / lines.spacing), mode="constant"), 1
     for reach in PROFILE.wider_profiles:
         few, count = count * points < CURBS.thin_density * lines.width * lines.spacing, 2 * reach + 1
-        more = find_steps(widened(lines, reach, settings.layer_jump, few).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+        around = lines.part(section[0] - reach, section[1] + reach)
+        more = find_steps(widened(around, reach, settings.layer_jump, few).part(*section), CURBS.low_curb_share * settings.limits.least_height,
                           settings.max_height, LEAST_EVIDENCE * count * lines.width)
         off = more.s - (more.profile + 0.5) * lines.width
         # a face in one half of a profile alone begins or ends there
