@@ -158,8 +158,8 @@ class StepPatches:
     def corners(self) -> dict[str, np.ndarray]:
         """The corner of every candidate.
 
-        Returns dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `sharpness` : share of the step right
-        at its face; `good` : bool, is it a step?; `likely` : bool, may it be one in another direction or view?
+        Returns dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `good` : bool, is it a step?; `likely` : bool,
+        may it be one in another direction or view?
         """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = np.flatnonzero((u < -CURBS.face_margin) & (u > -CURBS.road_side_length - CURBS.face_margin))
