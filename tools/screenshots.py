@@ -175,7 +175,10 @@ def corrections(dock):
     kept(1)
     wait(1)
     # a zebra crossing has no edge lines
-    dock.list.setCurrentRow(next((row for row, piece in enumerate(dock.place.pieces) if piece.target == "marking"), 0))
+    at, row = next((at, row) for at, place in enumerate(dock.places) for row, piece in enumerate(place.pieces) if piece.target == "marking")
+    dock.at = at - 1
+    dock.go(dock.road_map)
+    dock.list.setCurrentRow(row)
     dock.note.setText({"de": "Zebrastreifen"}.get(os.environ["LANEWRIGHT_LANG"], "zebra crossing"))
     dock.delete_button.click()
     kept(2)
@@ -189,8 +192,8 @@ def corrections(dock):
     wait(1)
     dock.tool.finish()
     kept(3)
-    dock.at = -1
-    dock.go(dock.road_map)  # the first place, with what was decided there
+    dock.at = at - 1
+    dock.go(dock.road_map)  # the crossing, with what was decided there
     wait(2)
     keep(iface.mainWindow(), "window_corrections")
     dock.run_button.click()

@@ -597,21 +597,50 @@ def behind_best(cost: np.ndarray, transition: np.ndarray, least: np.ndarray, bes
 
     cost, transition : as of `ways`, of which `least` are the most probable; best : as of `best_sequence`; length : (I,) m of each interval
     """
-    (choice, total), all_along = best, min(1.0, repeats / max(float(length.sum()), 1e-9))
-    apart = np.repeat(length[:, None].astype(float), cost.shape[1], axis=1)
-    apart[np.arange(len(choice)), choice] = 0.0
-    result, columns = np.full(cost.shape, np.inf), np.arange(cost.shape[1])
+    all_along = min(1.0, repeats / max(float(length.sum()), 1e-9))
     # the most probable one may differ for metres, where one that differs all along the road is more probable by what counts
-    for share, (forward, backward) in ((1.0, least), (all_along, ways(all_along * cost, transition, np.min))):
-        # nats, and metres for which a sequence has been apart from the best one, up to a cross-section and from it on
-        nats, on, before, after = cost.copy(), np.zeros(cost.shape), apart.copy(), apart.copy()
-        for i in range(1, len(cost)):
-            came = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
-            nats[i] += nats[i - 1][came] + transition[i - 1][came, columns]
-            before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came], 0.0)
-        for i in range(len(cost) - 1, 0, -1):
-            goes_on = (transition[i - 1] + (share * cost[i] + backward[i])[None, :]).argmin(1)
-            on[i - 1] = transition[i - 1][columns, goes_on] + (cost[i] + on[i])[goes_on]
-            after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][goes_on], 0.0)
-        result = np.minimum(result, (nats + on - total) * np.minimum(1.0, repeats / np.maximum(before + after - apart, 1e-9)))
-    return result
+    either = [_sequences_through(cost, transition, share, of)
+              for share, of in ((1.0, least), (all_along, ways(all_along * cost, transition, np.min)))]
+    results = [_behind(through, *best, length, repeats) for through in either]
+    # what such a one has besides on a short way is seen there alone, and does not count less for the rest of the road
+    nats, came, goes_on = either[1]
+    apart = np.where(results[1][1] > 0, results[1][0], np.inf)
+    i, k = np.unravel_index(apart.argmin(), apart.shape)
+    if np.isfinite(apart[i, k]):
+        choice = np.full(len(cost), k)
+        for at in range(i, 0, -1):
+            choice[at - 1] = came[at - 1, choice[at]]
+        for at in range(i, len(cost) - 1):
+            choice[at + 1] = goes_on[at, choice[at]]
+        besides = [_behind(through, choice, nats[i, k], length, repeats) for through in either]
+        results = [(np.where(over < metres, np.maximum(behind, apart[i, k] + more), behind), metres)
+                   for (behind, metres), (more, over) in zip(results, besides)]
+    return np.minimum(results[0][0], results[1][0])
+
+
+def _sequences_through(cost, transition, share, least):
+    """(I, K) nats of sequences through each cross-section, the `least` ones with a share of its cost, and (I - 1, K) which come before and after."""
+    forward, backward = least
+    nats, on, columns = cost.copy(), np.zeros(cost.shape), np.arange(cost.shape[1])
+    came, goes_on = np.zeros((2, max(len(cost) - 1, 0), cost.shape[1]), int)
+    for i in range(1, len(cost)):
+        came[i - 1] = (forward[i - 1][:, None] + transition[i - 1]).argmin(0)
+        nats[i] += nats[i - 1][came[i - 1]] + transition[i - 1][came[i - 1], columns]
+    for i in range(len(cost) - 1, 0, -1):
+        goes_on[i - 1] = (transition[i - 1] + (share * cost[i] + backward[i])[None, :]).argmin(1)
+        on[i - 1] = transition[i - 1][columns, goes_on[i - 1]] + (cost[i] + on[i])[goes_on[i - 1]]
+    return nats + on, came, goes_on
+
+
+def _behind(through, choice, total, length, repeats):
+    """(I, K) nats that count, by which such sequences are behind another one of `total` nats, and metres for which they are apart from it."""
+    nats, came, goes_on = through
+    apart = np.repeat(length[:, None].astype(float), nats.shape[1], axis=1)
+    apart[np.arange(len(choice)), choice] = 0.0
+    before, after = apart.copy(), apart.copy()   # up to a cross-section and from it on
+    for i in range(1, len(nats)):
+        before[i] = np.where(apart[i] > 0, before[i] + before[i - 1][came[i - 1]], 0.0)
+    for i in range(len(nats) - 1, 0, -1):
+        after[i - 1] = np.where(apart[i - 1] > 0, after[i - 1] + after[i][goes_on[i - 1]], 0.0)
+    metres = before + after - apart
+    return (nats - total) * np.minimum(1.0, repeats / np.maximum(metres, 1e-9)), metres

@@ -82,7 +82,7 @@ def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray,
                 best[name][remeasured[better]] = values[better]
     good = best["good"]
     if least_evidence > 0.0:
-        owner, index = everywhere
+        owner, index = (v[good.take(everywhere[0])] for v in everywhere)
         point = lines.point.take(index)
         s = lines.s.take(point) - best["s"].take(owner)
         good = good & (_step_evidence(owner, lines.u.take(point) - best["u"].take(owner) - best["skew"].take(owner) * s, s, lines.h.take(index),

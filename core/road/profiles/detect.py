@@ -101,8 +101,9 @@ def _with_wider_profiles(steps, lines, section, settings):
     for reach in PROFILE.wider_profiles:
         # in as many profiles as were looked at together before
         few = count * uniform_filter1d(points, count, axis=0, mode="nearest") < CURBS.thin_density * lines.width * lines.spacing
-        count = 2 * reach + 1
-        more = find_steps(widened(lines, reach, settings.layer_jump, few).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+        count, (first, last) = 2 * reach + 1, (section[0] - reach, section[1] + reach)
+        around = widened(lines.part(first, last), reach, settings.layer_jump, few[first - lines.first:last - lines.first])
+        more = find_steps(around.part(*section), CURBS.low_curb_share * settings.limits.least_height,
                           settings.max_height, LEAST_EVIDENCE * count * lines.width)
         off = more.s - (more.profile + 0.5) * lines.width
         # a face in one half of a profile alone begins or ends there

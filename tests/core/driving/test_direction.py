@@ -197,6 +197,17 @@ def test_of_three_lanes_parted_by_dashes_alone_the_one_beyond_the_middle_remains
     assert all(row["confidence"] > 0.9 and row["direction"] == 1 for offset, _, row in pieces if offset < -2)
 
 
+@pytest.mark.parametrize("vehicle", [-5.25, -1.75])
+def test_of_four_lanes_parted_by_dashes_alone_those_where_one_drove_are_as_sure_along_a_long_road_as_along_a_short_one(vehicle):
+    """That the other two may lead the other way along all of it does not say that a lane may be missing on a short way."""
+    street = Street(length=1600.0, vehicle=vehicle).paint(7.0, kind="edge").paint(-7.0, kind="edge")
+    for offset in (3.5, 0.0, -3.5):
+        street.paint(offset, kind="", pattern="dashed")
+    pieces = [(float(np.median(street.offsets(line))), row) for line, row in street.lanes(traffic_side="right")[0]]
+    assert all(row["confidence"] > 0.9 and row["other"] is None for offset, row in pieces if offset < 0)
+    assert all(row["confidence"] <= 0.6 and row["other"] for offset, row in pieces if offset > 0)
+
+
 @pytest.mark.parametrize("half", [0.1, 0.15])
 def test_a_double_line_parts_the_directions_of_a_broad_street_that_was_driven_in_its_outermost_lanes(half):
     """As in the United States, where both lines are 10 cm wide and as far apart. Between the drives there is no end of the road."""
