@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from ...common.arrays import order_by
 from ..weights import CURBS
@@ -137,13 +138,14 @@ def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jum
     return replace(_of_points(lines, indices, _places(lines)[indices], layer_jump), spread=lines.spread)
 
 
-def widened(lines: PseudoScanLines, reach: int, layer_jump: float, columns: np.ndarray) -> PseudoScanLines:
-    """The same profiles, each with the points of as many more, `reach`, on either side of it, in the columns of cells that (C,) bool names."""
-    (rows, cells), place = lines.shape, _places(lines)
-    kept = np.flatnonzero(columns.take(place % cells))
-    place = (place.take(kept) + np.arange(-reach, reach + 1)[:, None] * cells).ravel()
-    inside = np.flatnonzero((place >= 0) & (place < rows * cells))
-    indices = np.tile(kept, 2 * reach + 1)[inside]
+def widened(lines: PseudoScanLines, reach: int, layer_jump: float, cells: np.ndarray) -> PseudoScanLines:
+    """The same profiles, each with the points of as many more, `reach`, on either side of it, in the cells that (P, C) bool names."""
+    place, steps = _places(lines), np.arange(-reach, reach + 1)
+    kept = np.flatnonzero(maximum_filter1d(cells, 2 * reach + 1, axis=0, mode="constant").take(place))
+    place = (place.take(kept) + steps[:, None] * cells.shape[1]).ravel()
+    inside = np.flatnonzero((place >= 0) & (place < cells.size))
+    inside = inside[cells.take(place.take(inside))]
+    indices = np.tile(kept, len(steps))[inside]
     return replace(_of_points(lines, indices, place[inside], layer_jump), noise=lines.noise, spread=lines.spread)
 
 

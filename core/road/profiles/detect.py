@@ -97,11 +97,13 @@ def _steps_by_noise(lines, section, settings, overgrown, thin):
 
 def _with_wider_profiles(steps, lines, section, settings):
     """Also the steps that more and more profiles together show, each where fewer of them hold few points and show none."""
-    points, count = uniform_filter1d(lines.count.mean(0), round(CURBS.thin_width / lines.spacing), mode="constant"), 1
+    points, count = uniform_filter1d(lines.count.astype(float), round(CURBS.thin_width / lines.spacing), mode="constant"), 1
     for reach in PROFILE.wider_profiles:
-        few, count = count * points < CURBS.thin_density * lines.width * lines.spacing, 2 * reach + 1
-        around = lines.part(section[0] - reach, section[1] + reach)
-        more = find_steps(widened(around, reach, settings.layer_jump, few).part(*section), CURBS.low_curb_share * settings.limits.least_height,
+        # in as many profiles as were looked at together before
+        few = count * uniform_filter1d(points, count, axis=0, mode="nearest") < CURBS.thin_density * lines.width * lines.spacing
+        count, (first, last) = 2 * reach + 1, (section[0] - reach, section[1] + reach)
+        around = widened(lines.part(first, last), reach, settings.layer_jump, few[first - lines.first:last - lines.first])
+        more = find_steps(around.part(*section), CURBS.low_curb_share * settings.limits.least_height,
                           settings.max_height, LEAST_EVIDENCE * count * lines.width)
         off = more.s - (more.profile + 0.5) * lines.width
         # a face in one half of a profile alone begins or ends there

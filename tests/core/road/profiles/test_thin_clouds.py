@@ -54,3 +54,13 @@ def test_a_curb_in_few_points_is_found_where_the_cloud_is_dense_beside_the_track
 @pytest.mark.parametrize("per_area", [12.0, 50.0])
 def test_a_rough_verge_in_few_points_is_no_curb(per_area):
     assert len(detect_curbs(survey_of(thin(rough_verge(street(curb=0.03, face=0.3, lines=0.04)), whole=2.0, per_area=per_area)))) == 0
+
+
+def test_curbs_in_few_points_are_found_just_behind_a_dense_stretch():
+    points = street(curb=0.10, lines=0.02)
+    x, y = points[:2]
+    kept = np.random.default_rng(5).random(len(x)) < np.where(x < 24.0, 1000.0, PER_AREA) * np.ptp(x) * np.ptp(y) / len(x)
+    curbs = detect_curbs(survey_of(tuple(column[kept] for column in points)))
+    for side in ("left", "right"):
+        station = measured(curbs, side)[:, 0]
+        assert len(np.unique(np.floor(station[(station > 32.0) & (station < 40.0)] / 2))) == 4, side
