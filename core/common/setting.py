@@ -54,7 +54,7 @@ class Choices:
     def check(self, value: str) -> None:
         """Refuse another word."""
         if value not in self.words:
-            raise RoadExtractionError(f"{self.name} is {value!r}; it must be one of {', '.join(self.words)}.")
+            raise RoadExtractionError(f"{self.name} is “{value}”; it must be one of {', '.join(self.words)}.")
 
 
 def setting(default: Any, minimum: float, maximum: float, name: str, unit: str = "", zero: str = "") -> Any:

@@ -71,7 +71,7 @@ class CURBS:
     min_level_points: int = 4   # points that a cell needs for a statement whether it is level
     # thin clouds
     thin_width: float = 2.0   # m across in which points are densest: beside the track
-    thin_density: float = 640.0   # points per m² of ground there, and at a step, below which several profiles show more than one
+    thin_density: float = 480.0   # points per m² of ground there, and at a step, below which several profiles show more than one
     # occlusion
     occlusion_cell: float = 0.25   # m across
     min_occluder_height: float = 0.45   # m above the expected road, from which a thing can hide a curb
