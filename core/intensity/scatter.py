@@ -180,13 +180,14 @@ def _nats_of_photographs(road, scanner, count, _, differences, of_pass, along, a
 
     Von Neumann's ratio (1941), the mean squared difference of neighbours by their variance about a plane through the square, is 2 where each point
     scatters by itself, and less where neighbours are of one pixel of a photograph or of two. In photographs the level of a place, in the sun or the
-    shade, is the same for all scanners and passes; under a scanner it is another at each distance, or varies little where that was corrected.
+    shade, is the same for all scanners and passes; under a scanner it is another at each distance, or varies little where that was corrected. Levels
+    are compared across the road, along which asphalt may be old and new.
     """
     # in thin clouds few points share a small cell
     known = [ratio[np.isfinite(ratio)] for ratio in differences if count[np.isfinite(ratio)].sum() >= ASPHALT.min_scanner_points]
     if not known:
         return -np.inf
-    level = level - _means((scanner, of_pass), level)[0]
+    level = level - _means((road, along, scanner, of_pass), level)[0]
     (at_distance, by_distance), (at_place, by_place) = (_means(keys, level) for keys in ((scanner, of_pass, across), (road, along, across)))
     twice = (by_distance > 1) & (by_place > 1)
     about_distance, about_place = (((level - mean)[twice] ** 2).sum() / max((1.0 - 1.0 / of[twice]).sum(), 1.0) + ASPHALT.usual_level**2

@@ -35,7 +35,7 @@ class _AsphaltWeights:
     # Neighbours differed in photographs by 0.3 to 1.8 of their variance, under scanners by 1.05 to 2.2, on two real streets by 1.57 and 1.67
     photographed: float = 1.30
     neighbour_nats: float = 10.0   # for each time the variance
-    place_nats: float = 4.5   # for each time e that levels scatter more about those of a distance than about those of a place (of squares of scatter)
+    place_nats: float = 5.5   # for each time e that levels scatter more about those of a distance than about those of a place (of squares of scatter)
     usual_level: float = 0.10   # of logarithms of the level of asphalt: scatter that both have anyway
     usual_squares: int = 30   # seen twice, of which the evidence counts half
     doubtful_photographs: float = 2.0   # nats against, within which it is said that brightness may be that of photographs

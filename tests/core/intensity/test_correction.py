@@ -90,6 +90,14 @@ def test_neighbours_that_are_little_alike_are_of_photographs_where_both_scanners
     assert ("photographs" in report.reason) == photographs
 
 
+@pytest.mark.parametrize("new", [lambda s: s < 30, lambda s: s % 20 < 8])
+def test_asphalt_that_is_new_along_part_of_a_street_is_no_photograph_though_range_was_corrected(new):
+    """Both scanners see it as dark, wherever it lies across the road."""
+    records, _, _ = street(law=lambda across, scanner: np.full(len(across), 5000.0))
+    records["intensity"] = np.rint(records["intensity"] * np.where(new(records["s"] * 1e-4), 0.5, 1.0))
+    assert "photographs" not in corrected(records)[1].reason
+
+
 @pytest.mark.parametrize("nats, text", [(1.0, "Along 40 m .* as alike as in photographs.*"), (-1.0, ".* nearly as alike .*"), (-9.0, "")])
 def test_brightness_that_may_be_of_photographs_is_warned_of(nats, text):
     scatter = ScannerScatter({}, {(0, window): np.array([window]) for window in range(3)}, nats)
