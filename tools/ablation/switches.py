@@ -227,7 +227,7 @@ ROWS = (
         ("logarithmic scale", "asphalt_model:is_logarithmic", gives(False)),
         ("averages of noisy scanners", "scatter:ScannerScatter.noisy_windows", gives(set()), "many-beam scanner (Karlsruhe)",
          "/markings.paint.noisy:noisy_paint_cells /markings.paint.noisy:CellAverages scatter:ScannerScatter"),
-        ("ground around a spot of photographs", "scatter:ScannerScatter.photographed_windows", gives(set()), "brightness from photographs",
+        ("ground around a spot of photographs", "scatter:_nats_of_photographs", gives(-np.inf), "brightness from photographs",
          "/markings.paint.photographs:bright_spots")),
     *_room("paint", "markings",
         ("gutters", "paint.not_paint:gutter_level", gives(np.float32(0.0)), "urban street with concrete gutters"),

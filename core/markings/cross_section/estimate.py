@@ -13,7 +13,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
 from ...execution.phase import Executor, NoSource, Phase
-from .beside import NATS, SECOND_WIDTH
+from .beside import NATS, SECOND_WIDTH, SURE
 from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
@@ -230,7 +230,7 @@ class LaneSpan:
     right: int
     place: int   # from the right, of `count` lanes between them
     count: int
-    beside: np.ndarray   # (4,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
+    beside: np.ndarray   # (5,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
     direction: int
     probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
     confidence: float   # 0 to 1, how often such lanes are right, see `confidence_of`
@@ -259,6 +259,10 @@ def _lane_spans(estimate, part):
     k = 0
     of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
     beside = beside_of(c, strips)[best]
+    # a lane alone beside one painted border is no surer than its width
+    bare = UNPAINTED[c.made_of[strips.interval[best], [strips.left[best], strips.right[best]]]].sum(axis=0)
+    sure = np.where((bare == 1) & (strips.number[best] == 1), beside[:, SURE], 1.0)
+    shares[:, 1] = (shares[:, 1] * np.repeat(sure, strips.number[best])).round(6)
     for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]

@@ -54,7 +54,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
 
     left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
     number : lanes in the strip; usual : m, the usual width of a lane
-    beside : (..., 4) as of `lanes_beside`, of one lane beside the one of the two that is painted
+    beside : (..., 5) as of `lanes_beside`, of one lane beside the one of the two that is painted
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
@@ -71,7 +71,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
 
 
 def beside_of(c: Candidates, strips: LaneStrips) -> np.ndarray:
-    """(S, 4) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
+    """(S, 5) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
     interval, left, right = strips.interval, strips.left, strips.right
     beside = np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
     beside[strips.aside, BEYOND] = 0.0

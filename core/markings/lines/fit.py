@@ -390,7 +390,7 @@ def _linked(strands, edges, settings):
     lines = link_lines([LinkedLine([strand]) for strand in strands], trend, edges, settings.max_gap)
     lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
                                 partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
-    return [without_strays(line, trend, edges, settings.max_gap, settings.max_bridge) for line in lines], trend
+    return without_strays(lines, trend, edges, settings.max_gap, settings.max_bridge), trend
 
 
 def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: int) -> Iterator[dict[str, Any]]:

@@ -17,7 +17,7 @@ from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
-LENGTH, SENSOR, REACH, EAST, NORTH = 60.0, 2.0, 12.0, 500_000.0, 5_400_000.0
+LENGTH, SENSOR, REACH, EAST, NORTH = 60.0, 2.0, 9.0, 500_000.0, 5_400_000.0
 HALF = 3.5     # m, half the asphalt
 GRAVEL = 0.3   # m, strip of gravel between asphalt and grass
 
@@ -376,7 +376,9 @@ def test_the_road_ends_where_a_flush_sidewalk_twice_as_bright_begins(falloff):
 
 def test_a_flush_bicycle_path_is_no_road_where_its_far_side_is_as_dark_as_the_road():
     """Along 24 m of the street, the outer half of the path is no brighter than asphalt."""
-    path = np.vectorize(lambda s, d: 1.0 if abs(d) < HALF or (18 < s < 42 and abs(d) > HALF + 1.3) else 2.0)
+    def path(s, d):
+        return np.where((np.abs(d) < HALF) | (s > 18) & (s < 42) & (np.abs(d) > HALF + 1.3), 1.0, 2.0)
+
     survey = street(half=wide, grey_of=path)
     edges = found(survey)
     assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.9
