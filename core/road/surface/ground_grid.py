@@ -27,7 +27,6 @@ from ..common.pseudo_scanlines import lowest_layers
 from ..common.sides import ahead_of_vehicle
 from ..weights import CURBS, SURFACE
 
-MIN_FREEDOM = SURFACE.min_plane_points - 3   # derived: points beyond the three that make a plane
 GOLDEN_RATIO_32 = 0x9E3779B9   # source: golden ratio times 2^32; its multiples, modulo 2^32, are evenly distributed (Knuth, TAOCP 3, 6.4)
 
 
@@ -140,9 +139,9 @@ def roughness_of_rows(rough: np.ndarray, freedom: np.ndarray, median: Callable[[
     Returns (Q, K) m, NaN where even all points are too few
     """
     freedom = np.nan_to_num(freedom)
-    of_rows, together = median(np.where(freedom >= MIN_FREEDOM, rough, np.nan)), total(freedom)
-    pooled = np.sqrt(np.maximum(total(np.nan_to_num(rough)**2 * freedom), 0.0) / np.maximum(together, MIN_FREEDOM))
-    return np.where(np.isfinite(of_rows) | (together < MIN_FREEDOM - 0.5), of_rows, pooled)
+    of_rows, together = median(np.where(freedom >= SURFACE.min_freedom, rough, np.nan)), total(freedom)
+    pooled = np.sqrt(np.maximum(total(np.nan_to_num(rough)**2 * freedom), 0.0) / np.maximum(together, SURFACE.min_freedom))
+    return np.where(np.isfinite(of_rows) | (together < SURFACE.min_freedom - 0.5), of_rows, pooled)
 
 
 def _ground_columns(column_size: float) -> int:
@@ -152,7 +151,7 @@ def _ground_columns(column_size: float) -> int:
 
 def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callable[[np.ndarray], np.ndarray],
                  row_size: float = SURFACE.row_length, column_size: float = SURFACE.column_width,
-                 bright: Callable[[Points], np.ndarray] | None = None, least: int = MIN_FREEDOM) -> GroundCells:
+                 bright: Callable[[Points], np.ndarray] | None = None, least: int = SURFACE.min_freedom) -> GroundCells:
     """The ground cells of a window of the road.
 
     points : Points of the window
@@ -263,7 +262,7 @@ def _planes(at, count, u, v, z, view, least):
         off = np.bincount(of_view, dz - across.take(at) * du - along.take(at) * dv, points_of_view.size).reshape(-1, views)
         squares = np.maximum(squares - (off**2 / np.maximum(points_of_view, 1)).sum(1), 0.0)
         freedom = n - 2 - np.maximum((points_of_view > 0).sum(1), 1)
-    enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
+    enough, any_ground = count >= SURFACE.min_freedom + 3, count >= SURFACE.min_layer_points
     rough, known = np.sqrt(squares / np.maximum(freedom, 1)), freedom >= least
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(known, rough, np.nan), np.where(known, freedom, 0)
@@ -461,6 +460,6 @@ def _profiles_of_window(survey, points, road, row):
     if not thin or not measured(survey.window(road, start * SURFACE.profile_row, (start + rows) * SURFACE.profile_row), start, rows,
                                 SURFACE.profile_row)[1]:
         return single
-    joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW, MIN_FREEDOM)
+    joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW, SURFACE.min_freedom)
     joined.count /= PROFILES_PER_WINDOW
     return replace(joined, **{name: np.repeat(getattr(joined, name), PROFILES_PER_WINDOW, axis=0) for name in SurfaceProfiles.NAMES})
