@@ -284,14 +284,15 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     looked_at = [(file, times_of(file)) for file in files if file.count] if samples is None else [(one.file, one.times) for one in samples]
-    # of many points one time at least is another, if times were measured
-    missing = [file.path for file, time in looked_at
-               if not len(time) or time.max() == time.min() and (file.count >= LAS.values_for_step or len(looked_at) == 1)]
+    times = np.concatenate([np.empty(0), *(time for _, time in looked_at)])
+    changes = [len(time) > 0 and time.max() > time.min() for _, time in looked_at]
+    # of many points one time at least is another, if times were measured; where none of the files has two, each may be a frame with a time of its own
+    missing = [file.path for (file, time), changing in zip(looked_at, changes) if not len(time) or not changing and (
+        file.count >= LAS.values_for_step if any(changes) else times.max() == times.min())]
     if missing or not looked_at:
         which = "The point cloud has" if len(missing) == len(looked_at) else f"{len(missing)} of {len(looked_at)} files, such as {missing[0]}, have"
         return trajectory, f"{which} no gps_time that changes; each point is assigned to the nearest position on the trajectory.", False, False
     sampled = [(file.path, time) for file, time in looked_at]
-    times = np.concatenate([time for _, time in sampled])
     week_ends = wrapped_week((times.min(), times.max()))
     if week_ends:
         sampled = [(path, unwrap_week(time)) for path, time in sampled]

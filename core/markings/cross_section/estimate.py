@@ -23,6 +23,7 @@ from .sequence import (
     SECOND,
     Sections,
     behind_best,
+    beside_island,
     beside_of,
     best_sections,
     best_sequence,
@@ -255,9 +256,10 @@ def _lane_spans(estimate, part):
     k = 0
     of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
     beside = beside_of(c, strips)[best]
-    # a lane alone beside one painted border is no surer than its width
-    bare = UNPAINTED[c.made_of[strips.interval[best], [strips.left[best], strips.right[best]]]].sum(axis=0)
-    sure = np.where((bare == 1) & (strips.number[best] == 1), beside[:, SURE], 1.0)
+    # a lane alone beside one painted border is no surer than its width, which an island shows
+    made_of = c.made_of[strips.interval[best], [strips.left[best], strips.right[best]]]
+    loose = (UNPAINTED[made_of].sum(axis=0) == 1) & ~beside_island(*made_of)
+    sure = np.where(loose & (strips.number[best] == 1), beside[:, SURE], 1.0)
     shares[:, 1] = (shares[:, 1] * np.repeat(sure, strips.number[best])).round(6)
     for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right

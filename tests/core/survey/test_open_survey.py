@@ -150,6 +150,14 @@ def test_a_file_whose_points_all_have_one_time_is_read_as_one_without_times(stre
     assert any(re.search("1 of 2 files, such as .*stopped.laz, have no gps_time that changes", text) for text in heard.warned)
 
 
+@pytest.mark.parametrize("files, time_of, has_time", [(8, np.mean, True), (30, lambda times: 0.0, False)])
+def test_frames_with_a_time_each_have_times_and_small_tiles_that_share_one_have_none(street, tmp_path, files, time_of, has_time):
+    trajectory, (x, y, z, time), _ = street
+    parts = enumerate(np.array_split(np.argsort(time, kind="stable"), files))
+    clouds = [write_cloud(tmp_path / f"{k}.laz", x[part], y[part], z[part], np.full(len(part), time_of(time[part])), crs=CRS) for k, part in parts]
+    assert open_survey(clouds, trajectory).has_time == has_time
+
+
 @pytest.mark.parametrize("height", [0.0, 0.45, -0.3])
 def test_a_line_on_the_road_is_refused_as_a_trajectory_with_a_way_on(street, height):
     trajectory, _, path = street
