@@ -138,8 +138,7 @@ def _no_steps(*_, **__):
 
 
 def _without_curbs(original):
-    return lambda lines, frame, width, side="automatic", curbs=None, *rest, **named: original(
-        lines, frame, width, side, None, *rest, **{**named, "pavement": {}})
+    return lambda lines, frame, width, side="automatic", edges=None, *rest, **named: original(lines, frame, width, side, None, *rest, **named)
 
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)

@@ -358,16 +358,6 @@ def strips_before(sections: Sections) -> np.ndarray:
     return before
 
 
-def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
-    """(I, K) nats of lines that separate something else than their layer says."""
-    separated, named = separated_kinds(sections), candidates.named[:, None, :]
-    return weights.named * _misnamed(separated, named).sum(2) * candidates.observations(weights)[:, None]
-
-
-def _misnamed(what, named):
-    return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
-
-
 def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray, first_direction: int, weights: EstimateWeights,
                   kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval; `stops` are those of Evidence, `first_direction` is that of the lanes met first."""
@@ -425,7 +415,7 @@ def _boundary_costs(c, stops, first_direction, w):
         for right in STRIPS:
             use = SEPARATES[left, right]
             if use >= 0:
-                misnamed = w.named * _misnamed(use, c.named)
+                misnamed = w.named * ((c.named >= 0) & (c.named != use) & (use != OTHER_LINE))
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
                 cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \
