@@ -253,7 +253,7 @@ def _judge_trajectory(inspection, wkt, has_time, progress):
         trajectory = clean_trajectory(reproject_trajectory(inspection.trajectory, wkt))
         inspection.notes += [note for note in (*trajectory.notes, *trajectory.doubts) if note not in inspection.notes]
         if has_time:
-            trajectory, note, *_ = match_clocks(inspection.files, trajectory, SurveySettings(), progress)
+            trajectory, note, has_time, _ = match_clocks(inspection.files, trajectory, SurveySettings(), progress)
             inspection.notes += [note] if note else []
         inspection.trajectory = trajectory
     except RoadExtractionError as problem:

@@ -15,8 +15,8 @@ from ..curves.robust import median
 from ..execution.in_step import in_step
 from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
-from ..markings.cross_section.roads import EstimatedRoad, estimate_roads, usual_side
-from ..markings.cross_section.sections import STATION_STEP, CrossSections, EdgeSections, sections_of_lines
+from ..markings.cross_section.roads import EstimatedRoad, RoadEstimates, estimate_roads, usual_side
+from ..markings.cross_section.sections import STATION_STEP, CrossSections, EdgeSections
 from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
@@ -37,18 +37,23 @@ from .weights import SIGMA
 __all__ = ["DrivingSettings", "make_driving_lines"]
 
 
+def estimate_lanes(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
+                   progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | EdgeSections | None = None,
+                   road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> RoadEstimates:
+    """What `estimate_roads` gives by the settings for lanes: with markings no lane leads along a hatched area, with edges none over a curb."""
+    return estimate_roads(marking_lines, frame, settings.usual_width, settings.traffic_side, edges, markings, road_points,
+                          width_asked=bool(settings.lane_width), progress=progress, taken=taken)
+
+
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
                        progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | EdgeSections | None = None,
-                       road_points: RoadPoints | None = None, taken: Sequence[TakenReading] = ()) -> tuple[DrivingLines, CurveElements, Lanes]:
+                       road_points: RoadPoints | None = None, estimates: RoadEstimates | None = None) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
-    Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
-    bridged one to one.
+    Lanes are those of the most probable cross-sections of each road; their middle is driven. Gaps of all lines are bridged one to one.
 
-    markings : MarkingObjects or None: no lane leads along a hatched area
-    edges : RoadEdges or their EdgeSections, or None: no lane leads over a curb
-    road_points : RoadPoints or None: the heights of the road
-    taken : second readings that an analyst took
+    markings, edges, road_points : as of `estimate_lanes`; the last show the heights of the road too
+    estimates : what `estimate_lanes` gave for these lines; None makes them here
 
     Returns
         lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
@@ -61,11 +66,10 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     areas: list[dict[str, Any]] = []
     lanes: dict[int, RoadLanes] = {}
     paint = marking_lines.scatter()
+    if estimates is None:
+        estimates = estimate_lanes(marking_lines, frame, settings, progress.part(0.0, 0.4), markings, edges, road_points)
+        progress = progress.part(0.4, 1.0)
     curbs, pavement = EdgeSections.of(edges)
-    estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
-                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width), pavement=pavement,
-                               progress=progress.part(0.0, 0.4), taken=taken)
-    progress.report(0.4)
     if estimates.roads and settings.traffic_side == "automatic" and (usual := usual_side(frame)):
         progress.info(f"Side of traffic: where the survey lies traffic drives on the {usual}, which counts a little.")
     if estimates.roads and not estimates.sure:
@@ -74,11 +78,11 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         progress.warn("The vehicle drove against the arrows painted in its lanes; lanes lead the way it drove. Look at the times of the trajectory.")
     roads = lanes_once([LanesOfRoad(_road_lanes(estimated, settings, estimates.lane_width), estimated.lines.s, frame.roads[number])
                         for number, estimated in estimates.roads.items()], frame, settings.shortest)
-    progress.report(0.5)
+    progress.report(0.1)
     works = fitted_lanes(roads), road_heights(road_points, [(number, road.s, road.tracks) for number, road in zip(estimates.roads, roads)])
-    fitted, measured = in_step(works, THREADS if road_points is None else road_points.executor, progress.part(0.5, 0.9))
+    fitted, measured = in_step(works, THREADS if road_points is None else road_points.executor, progress.part(0.1, 0.8))
     for count, ((number, estimated), road, z_of_road, (courses, alignment)) in enumerate(zip(estimates.roads.items(), roads, measured, fitted)):
-        part = progress.part(0.9 + 0.1 * count / len(roads), 0.9 + 0.1 * (count + 1) / len(roads))
+        part = progress.part(0.8 + 0.2 * count / len(roads), 0.8 + 0.2 * (count + 1) / len(roads))
         s = road.s
         passes = frame.passes_sigma(number, s)
         tracks = [replace(track, confidence=track.confidence * share_within(passes[track.first:track.last + 1])) for track in road.tracks]

@@ -326,16 +326,13 @@ def _followed(parts_of_lane, parts, first):
         for j, lane in enumerate(parts_of_lane):
             track = lane[-1]
             aside, wider = part.d[0] - track.d[-1], (part.width[0] - track.width[-1]) / 2
-            of_borders = np.abs([aside + wider, aside - wider])
+            of_borders = abs(aside + wider), abs(aside - wider)
             if track.last == first - 1 and track.direction == part.direction \
-                    and of_borders.min() < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
-                steps[k, j] = of_borders.sum()
-    follows = {}
-    for k, j in np.argwhere(np.isfinite(steps)).tolist():
-        others = np.append(np.delete(steps[k], j), np.delete(steps[:, j], k))
-        if steps[k, j] + SAME_LANE < others.min(initial=np.inf):
-            follows[k] = j
-    return follows
+                    and min(of_borders) < TRACKS.max_lane_jump_share * min(part.width[0], track.width[-1]):
+                steps[k, j] = sum(of_borders)
+    # no other part and no other lane is as near
+    return {k: j for k, j in np.argwhere(np.isfinite(steps)).tolist()
+            if np.count_nonzero(steps[k] <= steps[k, j] + SAME_LANE) == np.count_nonzero(steps[:, j] <= steps[k, j] + SAME_LANE) == 1}
 
 
 # Lanes that open or close beside another one along a taper.

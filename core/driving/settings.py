@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..common.setting import Limited, choice, setting
-from ..countries.catalogue import COUNTRIES, NEUTRAL
+from ..countries.catalogue import COUNTRIES, NEUTRAL, country
 
 MIN_LANE_WIDTH, MAX_LANE_WIDTH = NEUTRAL.narrowest_lane, NEUTRAL.widest_lane  # m between the lines of a lane, in any country
 
@@ -24,3 +24,8 @@ class DrivingSettings(Limited):
     max_bridge: float = setting(20.0, 0.0, 200.0, "The longest gap of all lines that is bridged", "m")
     shortest: float = setting(8.0, 0.0, 200.0, "The shortest driving line", "m")   # shorter driving lines are not worth a line
     country: str = choice(NEUTRAL.name, COUNTRIES, "The country")   # whose design code curves are checked against
+
+    @property
+    def usual_width(self) -> float:
+        """m, of lanes where the lines do not tell."""
+        return self.lane_width or country(self.country).usual_lane

@@ -89,7 +89,7 @@ class _TrackWeights:
     # what lanes of simulated streets show, not fitted on streets kept aside
     trust_bridged: float = 0.95
     trust_beyond_paint: float = 0.8
-    least_probability_of_end: tuple[float, float] = 0.25, 0.8   # of a lane at its end, between two borders and beside one: else it is mostly wrong
+    least_probability_of_end: tuple[float, float] = 0.3, 0.8   # of a lane at its end, between two borders and beside one: else it is mostly wrong
     end_width_length: float = 10.0   # m over which a lane's width at its end is taken
     least_jump: float = 0.02   # m across from which a border that goes on as another line is led over
     jump_lead: float = 30.0   # m along for each m across: at 1 in 20 at its steepest, a lane can be followed without braking

@@ -165,7 +165,7 @@ class AsphaltLook:
         (before, table, highest, reason), scattered = in_step([counted, scatter], road_points.executor, progress.part(0.4, 1.0))
         if table is not None and settings.scale != "automatic":
             table.logarithmic = settings.scale == "logarithmic"
-        if 2 * points_by_scanner[scattered.photographed].sum() > points_by_scanner.sum():
+        if scattered.photographed > 0.0:
             reason = PHOTOGRAPHED
         return cls(table, reason, beams, step, points_by_scanner, before.counts, highest, scattered)
 

@@ -23,8 +23,7 @@ from ..common.parallel import trim_heap
 from ..common.progress import Progress
 from ..corrections.apply import correct_edges, correct_lanes, correct_marking_lines, correct_markings
 from ..corrections.corrections import Corrections, corrections_from_features
-from ..countries.catalogue import country
-from ..driving.driving_lines import DrivingSettings, make_driving_lines
+from ..driving.driving_lines import DrivingSettings, estimate_lanes, make_driving_lines
 from ..execution.choice import ExecutionSettings
 from ..execution.in_step import in_step
 from ..execution.keep import Keep
@@ -35,7 +34,7 @@ from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_cor
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
-from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, named_by_estimate, named_by_lines
+from ..markings.lines.fit import LINES_SHARE, MarkingLineSettings, named_by_estimate, named_by_lines, traced_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
@@ -257,27 +256,33 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
     result.paint = clustered
     executor.forget()
     markings = correct_markings(markings, result.corrections)
-    readings = result.corrections.taken(frame)
     beside, edge_places = stages.follows("beside", partial(_beside, result.edges, frame))
-    lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
-                       edges=beside, road_points=result.road_points, taken=readings,
-                       depends=(result.corrections.asked("marking", ["delete"]), readings, settings.lines))
+    readings = result.corrections.taken(frame)
+
+    def named(lines, progress=Progress()):
+        """Lines with the names that their estimate gives them, and that."""
+        estimates = estimate_lanes(lines, frame, settings.driving, progress, markings, beside, result.road_points, readings)
+        return named_by_estimate(lines, estimates), estimates
+
+    def fitted(progress):
+        """Those of the lines as they are traced."""
+        lines = traced_lines(clustered, markings, frame, settings.lines, progress.part(0.0, LINES_SHARE), beside, result.road_points)
+        return named(lines, progress.part(LINES_SHARE, 1.0))
+
+    lines, estimates = stages.run("lines", "Fitting marking lines …", fitted, depends=(
+        result.corrections.asked("marking", ["delete"]), readings, settings.lines, settings.driving))
     drawn = correct_marking_lines(lines, frame, result.corrections, edge_places)
 
-    def named():
-        """Lines and markings with their names, and their layers."""
-        of_lines = lines if drawn is lines else named_by_estimate(drawn, frame, country(settings.lines.country).usual_lane, markings, beside,
-                                                                  result.road_points, clustered, taken=readings)
-        of_markings = named_by_lines(markings, of_lines)
-        return of_lines, of_markings, of_lines.to_features(frame), of_markings.to_features(frame)
+    def corrected():
+        """Those of the lines as an analyst corrected them, and the layers of lines and of the markings that they name."""
+        of_lines, of_lanes = (lines, estimates) if drawn is lines else named(drawn)
+        return of_lines, of_lanes, of_lines.to_features(frame), named_by_lines(markings, of_lines).to_features(frame)
 
-    lines, markings, result.marking_lines, result.markings = stages.follows("named", named, result.corrections.asked("marking"))
-    driving, elements, lanes = stages.run(
-        "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=beside, road_points=result.road_points, taken=readings, depends=settings.driving)
+    lines, estimates, result.marking_lines, result.markings = stages.follows("named", corrected, result.corrections.asked("marking"))
+    driving, elements, lanes = stages.run("driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
+                                          edges=beside, road_points=result.road_points, estimates=estimates, depends=settings.driving)
     executor.release()
-    driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
-                                             settings.driving.lane_width or country(settings.driving.country).usual_lane, edge_places)
+    driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections, settings.driving.usual_width, edge_places)
     result.driving_lines, result.curve_elements = driving.to_features(frame), elements.to_features(frame)
     result.lanes = lanes.to_features(frame)
     if not len(result.markings):

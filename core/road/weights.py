@@ -587,7 +587,7 @@ class SURFACE:
     max_points_per_cell: int = 100   # denser cells are subsampled: more points do not change the result
     ground_points_per_batch: int = 1 << 15   # points processed at a time; they fit into the cache of the processor
     min_layer_points: int = 3   # points of a layer
-    min_plane_points: int = 6   # points of a plane; cells with fewer have a mean height and no roughness
+    min_freedom: int = 3   # points of a plane beyond three; with fewer a cell has a mean height, and is rough only with its neighbours along the road
     profile_row: float = 1.0   # m along, and
     profile_column: float = 0.1   # m across the road, size of a cell of a profile
     farthest_ahead: float = 25.0   # m from the vehicle of points whose brightness counts: across a bend a place is seen from far away, too

@@ -30,7 +30,7 @@ from .survey import SHIPPED, Survey, SurveySettings, survey_in_file
 from .trajectory.meaning import EARTH_RADIUS
 from .trajectory.time_systems import SECONDS_PER_WEEK, align_time, unwrap_week, wrapped_week
 from .trajectory.trajectory import Trajectory, refuse_standstill, reproject_trajectory
-from .weights import FRAME, READING, STORE, TRAJECTORY, VEHICLE
+from .weights import FRAME, LAS, READING, STORE, TRAJECTORY, VEHICLE
 
 
 def open_survey(paths: Sequence[str | Path | CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
@@ -104,7 +104,8 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
     refuse_standstill(trajectory)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress, samples)
     if time_note:
-        (progress.warn if len({file.has_time for file in files}) > 1 else progress.info)(time_note)
+        some = trajectory.has_time and not has_time and any(np.ptp(one.times) > 0.0 for one in samples if len(one.times))
+        (progress.warn if some else progress.info)(time_note)
     fitted = fitted_trajectory(files, trajectory, settings.scanner_field, progress)
     frame = _frame_of(files, fitted.trajectory, crs, has_time, time_note, progress)
     files, one_scale = in_one_scale(files, samples, settings.intensity_from, np.c_[trajectory.x, trajectory.y])
@@ -282,14 +283,16 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     """
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
-    if not all(file.has_time for file in files):
-        missing = [file.path for file in files if not file.has_time]
-        which = "The point cloud has" if len(missing) == len(files) else f"{len(missing)} of {len(files)} files, such as {missing[0]}, have"
-        return trajectory, f"{which} no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
-    sampled = [(file.path, times_of(file)) for file in files if file.count] if samples is None else [(one.file.path, one.times) for one in samples]
-    times = np.concatenate([time for _, time in sampled])
-    if not len(times) or times.max() <= times.min():
-        return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
+    looked_at = [(file, times_of(file)) for file in files if file.count] if samples is None else [(one.file, one.times) for one in samples]
+    times = np.concatenate([np.empty(0), *(time for _, time in looked_at)])
+    changes = [len(time) > 0 and time.max() > time.min() for _, time in looked_at]
+    # of many points one time at least is another, if times were measured; where none of the files has two, each may be a frame with a time of its own
+    missing = [file.path for (file, time), changing in zip(looked_at, changes) if not len(time) or not changing and (
+        file.count >= LAS.values_for_step if any(changes) else times.max() == times.min())]
+    if missing or not looked_at:
+        which = "The point cloud has" if len(missing) == len(looked_at) else f"{len(missing)} of {len(looked_at)} files, such as {missing[0]}, have"
+        return trajectory, f"{which} no gps_time that changes; each point is assigned to the nearest position on the trajectory.", False, False
+    sampled = [(file.path, time) for file, time in looked_at]
     week_ends = wrapped_week((times.min(), times.max()))
     if week_ends:
         sampled = [(path, unwrap_week(time)) for path, time in sampled]

@@ -182,7 +182,7 @@ class LAS:
     farthest_place: float = 1e8   # m or feet from any origin: no place of a map lies farther
     bounds_tolerance: float = 0.01   # m: bounds are often rounded to centimetres
     coarse_coordinates: float = 0.02   # m: coordinates in coarser steps scatter by half a centimetre, which curbs and lines need
-    values_for_step: int = 1000   # values of a file from which the step of its coordinates is told
+    values_for_step: int = 1000   # values of a file from which the step of its coordinates is told, and whether its times change
     gaps_for_step: int = 10   # between different values of a coordinate: fewer may be chance
     share_of_other_gaps: float = 0.01   # of the gaps between different values may be less than the step, as where other points were added
     slot: float = 0.001   # s: some hundred pulses, a part of a mirror's turn

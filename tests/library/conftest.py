@@ -9,4 +9,4 @@ def street(made_once):
     from lanewright.library import run
 
     return made_once("library_street", lambda folder: run(
-        "samplesurvey", LENGTH=40, PULSE_RATE=80_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
+        "samplesurvey", LENGTH=40, PULSE_RATE=60_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))

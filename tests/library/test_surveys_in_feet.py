@@ -22,7 +22,7 @@ LAYERS = ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES", "
 def surveys(made_once):
     """{"feet", "metres": (cloud, trajectory)} of one street with a bend."""
     street = made_once("street_with_a_bend", lambda folder: run(
-        "samplesurvey", LENGTH=85, PULSE_RATE=60_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
+        "samplesurvey", LENGTH=70, PULSE_RATE=45_000, POINT_CLOUD=folder / "s.laz", TRAJECTORY=folder / "drive.gpkg"))
     folder = made_once("survey_in_feet", lambda folder: _write(street, folder))
     return {name: (str(folder / f"{name}.laz"), str(folder / f"{name}.csv")) for name in ("feet", "metres")}
 

@@ -14,7 +14,7 @@ FILES = {"ROAD_POINTS": "road_points.laz", "INTENSITY_IMAGE": "image.tif"}
 
 @pytest.fixture(scope="module")
 def survey(sample_survey):
-    return sample_survey(LENGTH=72, RADIUS=60, PULSE_RATE=40000, ROTATION_RATE=100)
+    return sample_survey(LENGTH=60, RADIUS=60, PULSE_RATE=40000, ROTATION_RATE=100)
 
 
 def destinations(folder):

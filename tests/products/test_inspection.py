@@ -106,6 +106,14 @@ def test_a_trajectory_of_the_same_survey_covers_it(tmp_path):
     assert found.near_share == 1.0 and found.in_time_share == 1.0 and not found.notes
 
 
+def test_where_points_of_one_tile_all_have_one_time_the_tile_is_noted_and_no_share_of_the_time_is_told(tmp_path):
+    stopped = laspy.read(a_carpet(tmp_path / "stopped.laz", layers=2))
+    stopped.gps_time = np.zeros(len(stopped))
+    stopped.write(str(tmp_path / "stopped.laz"))
+    found = inspect_survey([a_carpet(tmp_path / "a.laz"), tmp_path / "stopped.laz"], drive())
+    assert found.in_time_share is None and "stopped.laz, have no gps_time that changes" in found.notes[0]
+
+
 def test_a_trajectory_elsewhere_is_noted(tmp_path):
     found = inspect_survey([a_carpet(tmp_path / "a.laz")], drive(north=500.0))
     assert found.near_share == 0.0

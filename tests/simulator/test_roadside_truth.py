@@ -17,7 +17,7 @@ DEEP = {"barrier": 0.60, "hedge": 1.3, "wall": 0.25}  # m behind its face that p
 
 def survey(scene, **settings):
     """A thin survey, quick to make."""
-    return make_sample_survey(SampleSettings(scene=scene, pulse_rate=60_000.0, rotation_rate=100.0, **settings))
+    return make_sample_survey(SampleSettings(scene=scene, pulse_rate=40_000.0, rotation_rate=100.0, **settings))
 
 
 @pytest.fixture(scope="module")

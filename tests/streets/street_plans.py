@@ -8,14 +8,15 @@ SPACING = 0.08
 WIDTH, LENGTH = 13.0, 36.0  # m either side of the driven line, m driven
 
 
-def scan(raised, height=0.12, noise=0.003, grade=0.0, hidden=None, spacing=SPACING, seed=8):
+def scan(raised, height=0.12, noise=0.003, grade=0.0, hidden=None, spacing=SPACING, seed=8, within=None):
     """(x, y, z, time) of level ground with raised areas, their faces upright.
 
     raised : polygon or collection of them; hidden : polygon within which nothing is seen
-    grade : rise across, m per m; spacing : m between points
+    grade : rise across, m per m; spacing : m between points; within : x, y from and x, y to of the ground that is scanned, if not of all
     """
     rng = np.random.default_rng(seed)
-    x, y = (v.ravel() for v in np.meshgrid(np.arange(-3.0, LENGTH + 3.0, spacing), np.arange(-WIDTH, WIDTH, spacing)))
+    west, south, east, north = within or (-3.0, -WIDTH, LENGTH + 3.0, WIDTH)
+    x, y = (v.ravel() for v in np.meshgrid(np.arange(west, east, spacing), np.arange(south, north, spacing)))
     x, y = x + rng.uniform(0, spacing, len(x)), y + rng.uniform(0, spacing, len(y))
     z = np.where(shapely.contains_xy(raised, x, y), height, 0.0)
     faces = shapely.get_coordinates(shapely.segmentize(shapely.boundary(raised), 0.05))
@@ -23,7 +24,7 @@ def scan(raised, height=0.12, noise=0.003, grade=0.0, hidden=None, spacing=SPACI
     x = np.r_[x, np.repeat(faces[:, 0], len(up))]
     y = np.r_[y, np.repeat(faces[:, 1], len(up))]
     z = np.r_[z, np.tile(up, len(faces))]
-    seen = (np.abs(y) < WIDTH) & (x > -3.0) & (x < LENGTH + 3.0)
+    seen = (y > south) & (y < north) & (x > west) & (x < east)
     if hidden is not None:
         seen &= ~shapely.contains_xy(hidden, x, y)
     x, y, z = x[seen], y[seen], z[seen] + grade * y[seen]

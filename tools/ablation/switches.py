@@ -138,8 +138,7 @@ def _no_steps(*_, **__):
 
 
 def _without_curbs(original):
-    return lambda lines, frame, width, side="automatic", curbs=None, *rest, **named: original(
-        lines, frame, width, side, None, *rest, **{**named, "pavement": {}})
+    return lambda lines, frame, width, side="automatic", edges=None, *rest, **named: original(lines, frame, width, side, None, *rest, **named)
 
 
 NO_ROWS, NO_NUMBERS = np.empty((0, 2), np.int64), np.empty(0, np.int64)
@@ -227,7 +226,7 @@ ROWS = (
         ("logarithmic scale", "asphalt_model:is_logarithmic", gives(False)),
         ("averages of noisy scanners", "scatter:ScannerScatter.noisy_windows", gives(set()), "many-beam scanner (Karlsruhe)",
          "/markings.paint.noisy:noisy_paint_cells /markings.paint.noisy:CellAverages scatter:ScannerScatter"),
-        ("ground around a spot of photographs", "scatter:ScannerScatter.photographed_windows", gives(set()), "brightness from photographs",
+        ("ground around a spot of photographs", "scatter:_nats_of_photographs", gives(-np.inf), "brightness from photographs",
          "/markings.paint.photographs:bright_spots")),
     *_room("paint", "markings",
         ("gutters", "paint.not_paint:gutter_level", gives(np.float32(0.0)), "urban street with concrete gutters"),

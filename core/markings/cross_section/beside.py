@@ -14,19 +14,19 @@ from .candidates import Candidates
 from .evidence import Evidence
 from .weights import BARE, CURB, DOUBLE, ISLAND, OPEN, PAVEMENT, SAME_LANE, SURFACE, SURFACE_END, EstimateWeights
 
-WIDTH, SECOND_WIDTH, NATS, BEYOND = range(4)   # columns of `lanes_beside`
+WIDTH, SECOND_WIDTH, NATS, SURE, BEYOND = range(5)   # columns of `lanes_beside`
 
 
 def lanes_beside(c: Candidates, evidence: Evidence, usual: float, shown: bool, w: EstimateWeights) -> np.ndarray:
-    """(I, M, 2, 4) of a lane on the left and on the right of each boundary, see below.
+    """(I, M, 2, 5) of a lane on the left and on the right of each boundary, see below.
 
-    These are its width, m, the next probable one, by how many nats that is less so, inf without one, and, where it lies apart from the boundary, the
-    room beyond it, m, else NaN.
+    These are its width, m, the next probable one, by how many nats that is less so, inf without one, how probably the middle of the lane is within
+    SAME_LANE, and, where it lies apart from the boundary, the room beyond it, m, else NaN.
 
     usual : m, width of lanes of the road; shown : whether the lines of the road show it
     """
-    result = np.empty((*c.left.shape, 2, 4))
-    result[..., :] = usual, np.nan, np.inf, np.nan
+    result = np.empty((*c.left.shape, 2, 5))
+    result[..., :] = usual, np.nan, np.inf, 1.0, np.nan
     i, m = np.nonzero(c.valid & c.bounding)
     if not len(i):
         return result
@@ -151,7 +151,7 @@ def _readings(room, driven, track_sigma, usual, like, share, w):
 
 
 def _chosen(places, room, lined, across, nats, width, spread, w):
-    """(N, 3) width, second width and nats; a road is laid out alike as far as its line goes on.
+    """(N, 4) width, second width and nats, and how probably the middle is right; a road is laid out alike as far as its line goes on.
 
     The width is that of the most probable reading, or one towards the next, with which the lane is most often within SAME_LANE, and within a third of
     that, which counts less.
@@ -166,9 +166,10 @@ def _chosen(places, room, lined, across, nats, width, spread, w):
         share = np.nan_to_num(np.exp(nats.min(axis=0) - nats))
     between = first + np.array(w.between_widths)[:, None] * (other - first)
     off = np.abs(between[:, None] - width)
-    right = sum(value * (share * (ndtr((reach - off) / spread) - ndtr((-reach - off) / spread))).sum(axis=1)
-                for reach, value in ((2 * SAME_LANE, 1.0), (2 * SAME_LANE / 3, w.nearer)))
-    first = between[np.argmax([places.means(part, w.repeats) for part in right], axis=0), columns]
+    right, nearer = ((share * (ndtr((reach - off) / spread) - ndtr((-reach - off) / spread))).sum(axis=1)
+                     for reach in (2 * SAME_LANE, 2 * SAME_LANE / 3))
+    tried = np.argmax([places.means(part, w.repeats) for part in right + w.nearer * nearer], axis=0)
+    first, sure = between[tried, columns], right[tried, columns] / np.maximum(share.sum(axis=0), 1.0)
     apart = np.where(np.abs(width - first) > 2 * SAME_LANE, nats, np.inf)
     second = np.argmin(apart, axis=0)
     known = np.isfinite(apart[second, columns])
@@ -177,4 +178,4 @@ def _chosen(places, room, lined, across, nats, width, spread, w):
     bounded = np.isfinite(room)
     elsewhere = places.means(np.where(lined, across, np.where(bounded, first, np.nan)), w.laid_out)
     first = np.where(~bounded & np.isfinite(elsewhere), elsewhere, first)
-    return np.column_stack([first, width[second, columns], behind])
+    return np.column_stack([first, width[second, columns], behind, sure])

@@ -206,7 +206,7 @@ class Candidates(Rows, _MadeOf):
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
     wide: np.ndarray   # (I, M) as there, NaN of double lines
     drift: np.ndarray   # (I, M, 2) m, how far left of those offsets a boundary lies where an interval begins and where it ends
-    beside: np.ndarray   # (I, M, 2, 4) as `lanes_beside` gives it; NaN before
+    beside: np.ndarray   # (I, M, 2, 5) as `lanes_beside` gives it; NaN before
 
     def at_end(self, end: int, which: np.ndarray) -> Candidates:
         """The boundaries where the intervals begin, 0, or where they end, 1, in those of them that are meant, (I,) bool."""
@@ -356,4 +356,4 @@ def _table(groups, boundaries, first, last):
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
                       valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
-                      np.stack([column(groups[name], 0.0) for name in ("head", "tail")], axis=2), np.full((*shape, 2, 4), np.nan))
+                      np.stack([column(groups[name], 0.0) for name in ("head", "tail")], axis=2), np.full((*shape, 2, 5), np.nan))

@@ -13,7 +13,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...countries.catalogue import NEUTRAL
 from ...execution.phase import Executor, NoSource, Phase
-from .beside import NATS, SECOND_WIDTH
+from .beside import NATS, SECOND_WIDTH, SURE
 from .candidates import Candidates
 from .evidence import Evidence
 from .sequence import (
@@ -23,12 +23,12 @@ from .sequence import (
     SECOND,
     Sections,
     behind_best,
+    beside_island,
     beside_of,
     best_sections,
     best_sequence,
     lane_places,
     lane_strips,
-    misnamed_costs,
     probabilities,
     separated_kinds,
     strip_costs,
@@ -47,7 +47,7 @@ class RoadEstimate:
     """The cross-sections of one road for one side of traffic.
 
     lined : (N,) int, the intervals of which something is known
-    costs : (3, N, K) nats of their cross-sections: all, without names, and of the latter what was seen here: what is laid out alike counts once
+    costs : (2, N, K) nats of their cross-sections, and of these what was seen here: what is laid out alike counts once
     transition, least : as of `ways` of these costs, the most probable ones
     once : (I, K) nats of the most probable sequence through each as far as it was seen here; inf where nothing is known
     other, behind : the estimate for the other side of traffic where either may be, else None, and by how many nats it is less probable
@@ -58,8 +58,7 @@ class RoadEstimate:
     sections: Sections
     choice: np.ndarray   # (I,) which of them
     total: float   # nats of them
-    unnamed_total: float   # nats of the best sequence without the names of the lines
-    once_total: float   # and as far as it was seen here
+    once_total: float   # nats of the best sequence as far as it was seen here
     first_direction: int   # of the lanes met first from the left
     evidence: Evidence   # that it is made from
     weights: EstimateWeights
@@ -77,16 +76,16 @@ class RoadEstimate:
     def probability(self) -> np.ndarray:
         """(2, I, K) how probable each cross-section is, by all that is known, and as far as it was seen here."""
         result = np.zeros((2, *self.sections.cost.shape))
-        result[:, self.lined] = probabilities(self.costs[::2], self.transition)
+        result[:, self.lined] = probabilities(self.costs, self.transition)
         return result
 
     @cached_property
     def second(self) -> np.ndarray:
-        """(I, K) by how many nats the most probable sequence through each is behind the best one, without names; inf where nothing is known."""
+        """(I, K) by how many nats the most probable sequence through each is behind the best one; inf where nothing is known."""
         result = np.full(self.sections.cost.shape, np.inf)
         if len(self.lined):
-            best, length = best_sequence(self.least[0, 1], self.transition), self.candidates.length[self.lined]
-            result[self.lined] = behind_best(self.costs[1], self.transition, self.least[:, 1], best, length, self.weights.repeats)
+            best, length = best_sequence(self.least[0, 0], self.transition), self.candidates.length[self.lined]
+            result[self.lined] = behind_best(self.costs[0], self.transition, self.least[:, 0], best, length, self.weights.repeats)
         return result
 
 
@@ -131,37 +130,35 @@ def _remembered(candidates, evidence, weights):
 
 
 def sections_of_stretch(source: NoSource, item: tuple[Candidates, Evidence, int, int, np.ndarray, np.ndarray], lane_width: float,
-                        weights: EstimateWeights) -> tuple[Sections, np.ndarray, np.ndarray]:
+                        weights: EstimateWeights) -> tuple[Sections, np.ndarray]:
     """The phase that chooses the cheapest cross-sections of the intervals of a stretch, and those beyond it up to the next that it leads to.
 
     item : what is known of the intervals, as of `estimates_of_roads`, how many of them are its own, and `known` and `left` as of `transitions`
 
-    Returns the Sections of its own intervals, (I, K) nats of what named their lines, and `transitions`
+    Returns the Sections of its own intervals, and `transitions`
     """
     candidates, evidence, first_direction, count, known, left = item
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, evidence.stops, first_direction, weights)
     sections.cost += _roads_of_many_lanes(candidates, sections, evidence, weights)
-    return (sections[:count], misnamed_costs(candidates, sections, weights)[:count],
-            transitions(candidates, sections, known, lane_width, left, weights))
+    return sections[:count], transitions(candidates, sections, known, lane_width, left, weights)
 
 
 def _estimate_of_road(candidates, evidence, first_direction, parts, lane_width, weights):
     """The RoadEstimate of the most probable sequence of cross-sections of one road, of whose stretches `sections_of_stretch` gave the parts."""
-    of_stretches, misnamed, of_gaps = zip(*parts)
+    of_stretches, of_gaps = zip(*parts)
     sections, transition = Sections.join(of_stretches), np.concatenate(of_gaps)
     _hold_to_taken(candidates, evidence, sections, lane_width, first_direction, weights)
     lined = np.flatnonzero(candidates.painted.any(1) | evidence.bare)
-    # what named the lines is the same evidence
-    cost = sections.cost - np.concatenate(misnamed)
     # what is laid out alike along the road was seen once
-    seen_once = cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
-    costs = np.stack([sections.cost, cost, seen_once])[:, lined]
-    least, choice, totals = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), [0.0] * 3
+    seen_once = sections.cost * weights.correlation / np.clip(candidates.length.sum(), weights.correlation, weights.laid_out)
+    costs = np.stack([sections.cost, seen_once])[:, lined]
+    least, choice, totals = ways(costs, transition, np.min), np.argmin(sections.cost, axis=1), (0.0, 0.0)
     once = np.full(sections.cost.shape, np.inf)
-    once[lined] = least[:, 2].sum(axis=0)
+    once[lined] = least[:, 1].sum(axis=0)
     if len(lined):
-        choice[lined], totals = best_sequence(least[0, 0], transition)[0], [*least[0, :2, -1].min(axis=1).tolist(), float(once.min())]
+        choice[lined], total = best_sequence(least[0, 0], transition)
+        totals = total, float(once.min())
     return RoadEstimate(candidates, lane_width, sections, choice, *totals, first_direction, evidence, weights, lined, costs, transition, least, once)
 
 
@@ -230,7 +227,7 @@ class LaneSpan:
     right: int
     place: int   # from the right, of `count` lanes between them
     count: int
-    beside: np.ndarray   # (4,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
+    beside: np.ndarray   # (5,) as of `lanes_beside`, of a lane that lies alone beside the one of them that is painted
     direction: int
     probability: float   # 0 to 1, of a lane of either direction there, with the posterior of RoadEstimate
     confidence: float   # 0 to 1, how often such lanes are right, see `confidence_of`
@@ -259,6 +256,11 @@ def _lane_spans(estimate, part):
     k = 0
     of_best = [values[best].tolist() for values in (strips.interval, strips.left, strips.right, strips.number, strips.first)]
     beside = beside_of(c, strips)[best]
+    # a lane alone beside one painted border is no surer than its width, which an island shows
+    made_of = c.made_of[strips.interval[best], [strips.left[best], strips.right[best]]]
+    loose = (UNPAINTED[made_of].sum(axis=0) == 1) & ~beside_island(*made_of)
+    sure = np.where(loose & (strips.number[best] == 1), beside[:, SURE], 1.0)
+    shares[:, 1] = (shares[:, 1] * np.repeat(sure, strips.number[best])).round(6)
     for row, (i, m, end, number, first) in enumerate(zip(*of_best)):
         # what the borders of its lanes separate, from left to right
         uses = [CENTRE_LINE if inner == first else LANE_LINE for inner in range(number + 1)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -14,6 +15,7 @@ from ...countries.catalogue import NEUTRAL
 from ...countries.traffic_side import side_of_traffic
 from ...execution.phase import THREADS
 from ...io.crs import horizontal_part, parse_crs, place_on_ground
+from ...road.edges.road_edges import RoadEdges
 from ...survey.frame.placement import located
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.road_points import RoadPoints
@@ -32,9 +34,12 @@ from .evidence import (
     offsets_of_others,
     surface_coverage,
 )
-from .sections import STATION_STEP, CrossSections, no_lines
+from .sections import STATION_STEP, CrossSections, EdgeSections, no_lines, sections_of_lines
 from .sequence import lane_strips
 from .weights import PAVEMENT, EstimateWeights, TakenReading
+
+if TYPE_CHECKING:
+    from ..lines.painted_lines import PaintedLines
 
 
 @dataclass
@@ -57,30 +62,30 @@ class RoadEstimates:
     against_arrows: bool   # whether the survey was driven against the arrows in its lanes
 
 
-def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
-                   curbs: dict[int, CrossSections] | None = None, markings: MarkingObjects | None = None,
+def estimate_roads(painted: PaintedLines, frame: RoadFrame, usual_width: float, side: str = "automatic",
+                   edges: RoadEdges | EdgeSections | None = None, markings: MarkingObjects | None = None,
                    road_points: RoadPoints | None = None, paint: RoadPoints | None = None, width_asked: bool = False,
-                   weights: EstimateWeights = EstimateWeights(), pavement: dict[int, CrossSections] | None = None,
-                   progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> RoadEstimates:
+                   weights: EstimateWeights = EstimateWeights(), progress: Progress = Progress(),
+                   taken: Sequence[TakenReading] = ()) -> RoadEstimates:
     """Estimate lines and lanes.
 
-    lines : {number of the road: CrossSections}
     usual_width : metres, of lanes where the lines do not tell
     side : "right", "left" or "automatic"
-    curbs, pavement : {number: CrossSections of road edges} with and without a curb, or None
+    edges, markings : what else the estimate is made from, or None
     road_points : RoadPoints or None; paint : points of markings, which serve where there are no road points, or None
     width_asked : whether `usual_width` is the user's own
     taken : second readings that an analyst took
     """
-    lines, bare = _between_borders_too(lines, frame, curbs or {}, pavement or {})
+    curbs, pavement = EdgeSections.of(edges)
+    lines, bare = _between_borders_too(sections_of_lines(painted), frame, curbs or {}, pavement)
     drives = {number: driven_offsets(frame, number, of_road.s) for number, of_road in lines.items()}
     arrows, against = _arrows_and_drive(markings, frame, lines, drives, side == "automatic", weights)
     if width_asked:
         weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
     evidence = {}
     for k, (number, of_road) in enumerate(lines.items()):
-        edges = [(sections or {}).get(number) for sections in (curbs, pavement)]
-        evidence[number] = _evidence_of_road(of_road, number, frame, edges, (road_points, paint), markings, arrows.get(number), drives[number],
+        beside = [(sections or {}).get(number) for sections in (curbs, pavement)]
+        evidence[number] = _evidence_of_road(of_road, number, frame, beside, (road_points, paint), markings, arrows.get(number), drives[number],
                                              usual_width, weights, taken, bare[number])
         progress.report(0.4 * (k + 1) / len(lines))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
@@ -179,21 +184,19 @@ def usual_side(frame: RoadFrame) -> str:
 
 
 def _best_side(estimates, usual, weights):
-    """The most probable side of traffic, and by how many nats the other is behind, once and as a second reading; inf where names of lines decide it.
+    """The most probable side of traffic, and by how many nats the other is behind, once and as a second reading.
 
-    Names that decide the side are not made from the same evidence. What is seen again and again along a road was laid out and driven once.
+    What is seen again and again along a road was laid out and driven once.
     """
     if len(estimates) == 1:
         return next(iter(estimates)), np.inf, np.inf
     prior = {"left": -weights.foreign_side, "right": weights.foreign_side}.get(usual, weights.left_hand)
     # nats by which traffic on the left is behind
-    total, unnamed, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
+    total, once = (prior + sum((getattr(left, name) - getattr(estimates[-1][number], name)) * min(
         1.0, weights.repeats / max(float(left.candidates.length.sum()), 1.0)) for number, left in estimates[1].items())
-        for name in ("total", "unnamed_total", "once_total"))
+        for name in ("total", "once_total"))
     best = 1 if total < 0 else -1
-    if total * unnamed < 0:
-        return best, np.inf, np.inf
-    return best, max(-best * once, 0.0), abs(unnamed)
+    return best, max(-best * once, 0.0), abs(total)
 
 
 def _taken_on(taken, number, candidates, s):

@@ -85,8 +85,8 @@ def _plain(lines):
 
 
 def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
-    """CrossSections of marking lines, by road number."""
-    return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged", lines.width)
+    """CrossSections of marking lines, by road number, with the kinds that were told by hand."""
+    return cross_sections(lines.course, lines.line, lines.told, lines.pattern, lines.status != "bridged", lines.width)
 
 
 class EdgeSections(NamedTuple):

@@ -54,7 +54,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
 
     left, right : m, offsets of the two boundaries of each strip; made_left, made_right : SOLID ... ISLAND, what they are made of
     number : lanes in the strip; usual : m, the usual width of a lane
-    beside : (..., 4) as of `lanes_beside`, of one lane beside the one of the two that is painted
+    beside : (..., 5) as of `lanes_beside`, of one lane beside the one of the two that is painted
     """
     open_left, open_right = UNPAINTED[made_left], UNPAINTED[made_right]
     loose = open_left ^ open_right
@@ -71,7 +71,7 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
 
 
 def beside_of(c: Candidates, strips: LaneStrips) -> np.ndarray:
-    """(S, 4) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
+    """(S, 5) of `lanes_beside` for some strips, on the inner side of their boundary that is painted; beyond one aside is no room."""
     interval, left, right = strips.interval, strips.left, strips.right
     beside = np.where(UNPAINTED[c.made_of[interval, left]][:, None], c.beside[interval, right, 0], c.beside[interval, left, 1])
     beside[strips.aside, BEYOND] = 0.0
@@ -358,16 +358,6 @@ def strips_before(sections: Sections) -> np.ndarray:
     return before
 
 
-def misnamed_costs(candidates: Candidates, sections: Sections, weights: EstimateWeights) -> np.ndarray:
-    """(I, K) nats of lines that separate something else than their layer says."""
-    separated, named = separated_kinds(sections), candidates.named[:, None, :]
-    return weights.named * _misnamed(separated, named).sum(2) * candidates.observations(weights)[:, None]
-
-
-def _misnamed(what, named):
-    return (what >= 0) & (named >= 0) & (named != what) & (what != OTHER_LINE)
-
-
 def best_sections(candidates: Candidates, costs: _StripCosts, stops: np.ndarray, first_direction: int, weights: EstimateWeights,
                   kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval; `stops` are those of Evidence, `first_direction` is that of the lanes met first."""
@@ -425,7 +415,7 @@ def _boundary_costs(c, stops, first_direction, w):
         for right in STRIPS:
             use = SEPARATES[left, right]
             if use >= 0:
-                misnamed = w.named * _misnamed(use, c.named)
+                misnamed = w.named * ((c.named >= 0) & (c.named != use) & (use != OTHER_LINE))
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
                 cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \

@@ -43,7 +43,7 @@ class EstimateWeights:
     bare: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     bare_too: float = 0.7   # of the other border of a strip between lanes, one border of which has no line: half of them have none either
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)   # that are the border of a hatched area
-    named: float = 3.0   # of a line that separates something else than its layer says
+    named: float = 3.0   # of a line that separates something else than who drew or confirmed it says
     stroke: float = 3.0   # m of paint that strokes of symbols have too
     long_line: float = 25.0   # m of paint that make a line sure
     lane_through_paint: float = 10.0   # of a seen line inside a lane,
@@ -148,7 +148,7 @@ class Reading:
     lanes : offset of the middle and width, m, and direction of each lane that then lies there, from left to right
     """
 
-    nats: float   # by how much it is less probable than the first; 0 where that was chosen by the names of lines alone
+    nats: float   # by how much it is less probable than the first
     lanes: tuple[tuple[float, float, int], ...]
 
 

@@ -28,15 +28,15 @@ from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.columns import Columns
 from ...survey.store.road_points import RoadPoints, columns_of_roads
 from ..cross_section.evidence import hatched_areas
-from ..cross_section.roads import estimate_roads
-from ..cross_section.sections import EdgeSections, sections_of_lines
+from ..cross_section.roads import RoadEstimates, estimate_roads
+from ..cross_section.sections import EdgeSections
 from ..cross_section.sequence import separated_kinds
-from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights, TakenReading
+from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateWeights
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
 from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
-from .painted_lines import PaintedLines, painted_lines_of
+from .painted_lines import CONFIRMED, PaintedLines, painted_lines_of
 from .selection import SelectedLine, same_dash_pattern, select_lines
 from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
 
@@ -229,24 +229,12 @@ def _along(road, s, d):
 # Lines named by the estimate of their road, and markings after the lines that they make: a dash alone does not show what it separates.
 
 KINDS = {EDGE_LINE: "edge", LANE_LINE: "lane", CENTRE_LINE: "centre"}
-CONFIRMED = "accepted"        # status of a line that an analyst looked at
 
 
-def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
-                      edges: RoadEdges | EdgeSections | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None,
-                      progress: Progress = Progress(), taken: Sequence[TakenReading] = ()) -> PaintedLines:
-    """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
-
-    usual_width : m, of lanes where the lines do not tell
-    markings, edges, road_points : what else the estimate is made from, or None
-    paint : points of markings, which serve where there are no road points, or None
-    taken : second readings that an analyst took
-    """
+def named_by_estimate(lines: PaintedLines, estimates: RoadEstimates) -> PaintedLines:
+    """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn."""
     if not len(lines):
         return lines
-    curbs, pavement = EdgeSections.of(edges)
-    estimates = estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
-                               paint=paint, pavement=pavement, progress=progress, taken=taken)
     kinds, second = _kinds_of_lines(estimates)
     drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
                      np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
@@ -311,13 +299,21 @@ LINES_SHARE = 0.65   # derived: of the work, half of it to link lines; the rest 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
                       settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress(),
-                      edges: RoadEdges | EdgeSections | None = None, road_points: RoadPoints | None = None,
-                      taken: Sequence[TakenReading] = ()) -> PaintedLines:
-    """Trace, link and fit the painted lines of all roads.
+                      edges: RoadEdges | EdgeSections | None = None, road_points: RoadPoints | None = None) -> PaintedLines:
+    """The `traced_lines`, whose parameters these are, named by an estimate of their own."""
+    edges = EdgeSections.of(edges)
+    lines = traced_lines(clustered_points, markings, frame, settings, progress.part(0.0, LINES_SHARE), edges, road_points)
+    return named_by_estimate(lines, estimate_roads(lines, frame, country(settings.country).usual_lane, edges=edges, markings=markings,
+                                                   road_points=road_points, paint=clustered_points, progress=progress.part(LINES_SHARE, 1.0)))
+
+
+def traced_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame, settings: MarkingLineSettings = MarkingLineSettings(),
+                 progress: Progress = Progress(), edges: RoadEdges | EdgeSections | None = None,
+                 road_points: RoadPoints | None = None) -> PaintedLines:
+    """Trace, link and fit the painted lines of all roads, which have no names yet.
 
     clustered_points : RoadPoints with `cluster`; markings : MarkingObjects of the same clusters
     edges, road_points : RoadEdges, or their EdgeSections, and RoadPoints, or None: what the lines separate is told better with them
-    taken : second readings that an analyst took
 
     Returns PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and solid, comes in touching pieces with one
     `line` number, between which there is only what leads over a hatched area. Every piece is drawn on the line's one curve.
@@ -327,12 +323,11 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if not clustered_points.has_cluster:
         raise RoadExtractionError(
             "The points have no field “cluster”. Give the file that “Cluster markings” wrote, together with its layer.")
-    edge_sections = EdgeSections.of(edges)
     executor = THREADS if road_points is None else road_points.executor
-    selected, courses, dropped = _traced(clustered_points, markings, frame, edge_sections, settings, executor, progress.part(0.0, LINES_SHARE / 2))
+    selected, courses, dropped = _traced(clustered_points, markings, frame, EdgeSections.of(edges), settings, executor, progress.part(0.0, 0.5))
     phase = Phase(_lines_drawn, NoSource(), (settings.curve, settings.degree), lambda item: "the curves of marking lines",
                   listed=STRANDS.fitted_together)
-    fitted = list(executor.run_together(phase, courses, progress.part(LINES_SHARE / 2, LINES_SHARE)))
+    fitted = list(executor.run_together(phase, courses, progress.part(0.5, 1.0)))
     rows = [dict(row, line=number, road=road) for number, ((road, chosen), line) in enumerate(zip(selected, fitted), start=1)
             for row in _drawn_pieces(chosen, line, frame, road)]
     progress.info(f"Marking lines: {len(fitted)}; {dropped} fragments were left out.")
@@ -341,10 +336,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         progress.warn(f"{replaced} of {len(fitted)} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
     drawn = painted_lines_of(rows, frame, clustered_points.crs)
-    if road_points is not None:
-        drawn = with_unseen_paint(drawn, markings, clustered_points, road_points)
-    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edge_sections, road_points, clustered_points,
-                             progress.part(LINES_SHARE, 1.0), taken)
+    return drawn if road_points is None else with_unseen_paint(drawn, markings, clustered_points, road_points)
 
 
 def _traced(points, markings, frame, edges, settings, executor, progress):
@@ -390,7 +382,7 @@ def _linked(strands, edges, settings):
     lines = link_lines([LinkedLine([strand]) for strand in strands], trend, edges, settings.max_gap)
     lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
                                 partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
-    return [without_strays(line, trend, edges, settings.max_gap, settings.max_bridge) for line in lines], trend
+    return without_strays(lines, trend, edges, settings.max_gap, settings.max_bridge), trend
 
 
 def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: int) -> Iterator[dict[str, Any]]:

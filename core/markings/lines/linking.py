@@ -212,23 +212,28 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
         lines = _joined(lines, assigned_links(pairs))
 
 
-def without_strays(line: LinkedLine, trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float) -> LinkedLine:
-    """The line less short strands beside its course: of all ways along it, that whose links, as of `link_lines`, and strands left out cost least."""
-    strands = [LinkedLine([strand]) for strand in line.strands]
+def without_strays(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float) -> list[LinkedLine]:
+    """Lines less short strands beside their course: of all ways along each, that whose links, as of `link_lines`, and strands left out cost least."""
+    strands, line_of = [LinkedLine([strand]) for line in lines for strand in line.strands], [k for k, line in enumerate(lines) for _ in line.strands]
     starts, ends = (_line_ends(strands, trend, at_start) for at_start in (True, False))
-    pairs = sorted(_facing(starts, ends, -LINKS.max_strand_overlap, max_bridge), key=lambda pair: pair[1])
+    facing = _facing(starts, ends, -LINKS.max_strand_overlap, max_bridge)
+    pairs = sorted((pair for pair in facing if line_of[pair[0]] == line_of[pair[1]]), key=lambda pair: pair[1])
     gap, limit = _gaps_and_limits(pairs, ends, starts, max_gap)
     cost = (_misses(pairs, ends, starts, strands, trend, edges, np.inf) / limit) ** 2 + gap / max_gap
-    without = [LINKS.cost_of_stray if strand.length <= LINKS.max_stray_length else np.inf for strand in line.strands]
-    least, before = np.append(0.0, np.full(len(strands) - 1, np.inf)), {}
+    without = [LINKS.cost_of_stray if strand.painted <= LINKS.max_stray_length else np.inf for strand in strands]
+    least, before = np.where(np.diff(line_of, prepend=-1) > 0, 0.0, np.inf).tolist(), {}
     for (a, b), of_link in zip(pairs, cost.tolist()):
         of_way = least[a] + of_link + sum(without[a + 1:b])
         if of_way < least[b]:
             least[b], before[b] = of_way, a
-    way = [len(strands) - 1]
-    while way[-1] in before:
-        way.append(before[way[-1]])
-    return LinkedLine([line.strands[k] for k in reversed(way)]) if way[-1] == 0 else line
+    kept, end = [], 0
+    for line in lines:
+        first, end = end, end + len(line.strands)
+        way = [end - 1]
+        while way[-1] in before:
+            way.append(before[way[-1]])
+        kept.append(LinkedLine([line.strands[k - first] for k in reversed(way)]) if way[-1] == first else line)
+    return kept
 
 
 def _runs_beside(lines, beside, pair, before, after, trend):

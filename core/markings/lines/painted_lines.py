@@ -15,6 +15,7 @@ from ...curves.base import Curve
 from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.road_frame import RoadFrame
 
+CONFIRMED = "accepted"   # status of a line that an analyst looked at
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
 
@@ -62,6 +63,12 @@ class PaintedLines(LayerRows):
     width: np.ndarray | None = None
     unseen: list[np.ndarray] | None = None
     other: np.ndarray | None = None
+
+    @property
+    def told(self) -> np.ndarray:
+        """(P,) str objects, `kind` of what was drawn or confirmed by hand; "" of what was fitted, which an estimate named from the same lines."""
+        fitted = np.zeros(len(self), bool) if self.rmse is None else np.isfinite(self.rmse) & (self.status != CONFIRMED)
+        return np.where(fitted, "", self.kind)
 
     def scatter(self) -> dict[int, float]:
         """RMS distance of the paint from the curve of every line where it is known, metres, by the line's number."""

@@ -65,12 +65,10 @@ def _extract_from_image(road_points: RoadPoints, image: IntensityImage, frame: R
         scatter, = in_step([scanner_scatter(road_points)], executor, progress.part(0.0, 0.1))
     length = WINDOW_UNITS * COORDINATE_SCALE
     progress.info(scatter.summary(length))
-    if photographed := length * sum(len(scatter.photographed_windows(road)) for road in road_points.roads()):
-        progress.warn(f"Along {photographed:.0f} m brightness is that of colours, or neighbouring points are as alike as in photographs. Paint is "
-                      "compared with the ground around each spot there, and edges of shadows may be taken for it: look at these markings, or give "
-                      "the scanner's own intensity.")
-    ways = {road: (sorted(scatter.noisy_windows(road)), sorted(scatter.photographed_windows(road))) for road in road_points.roads()}
-    phase = Phase(paint_of_window, source, (settings, ways), lambda item: place_of(road_points, (*item, item[1] + 1)),
+    if doubt := scatter.doubt(length):
+        progress.warn(doubt)
+    noisy = {road: sorted(scatter.noisy_windows(road)) for road in road_points.roads()}
+    phase = Phase(paint_of_window, source, (settings, noisy, scatter.photographed > 0.0), lambda item: place_of(road_points, (*item, item[1] + 1)),
                   together=WINDOWS_PER_TASK, state=source.state)
     for index in executor.run(phase, windows_of(road_points), progress.part(0.1, 1.0)):
         paint.store.adopt(index, executor.folder)

@@ -70,15 +70,14 @@ class PaintSource:
 
 
 def paint_of_window(source: PaintSource, item: tuple[int, int], settings: MarkingSettings,
-                    ways: dict[int, tuple[list[int], list[int]]]) -> StoreIndex:
+                    noisy: dict[int, list[int]], photographed: bool) -> StoreIndex:
     """The phase that extracts paint; returns where its points lie in a part of the store of paint.
 
-    `item` : number of a road and of a window; `ways` : {road: windows with noisy points, in which paint is searched for in averages, and those with
-    brightness of photographs}.
+    `item` : number of a road and of a window; `noisy` : {road: windows with noisy points, in which paint is searched for in averages};
+    `photographed` : whether brightness is that of photographs.
     """
     road, window = item
-    noisy, photographed = (window in some for some in ways.get(road, ((), ())))
-    records = _Window(source, road, window).extract(settings, noisy, photographed)
+    records = _Window(source, road, window).extract(settings, window in noisy.get(road, ()), photographed)
     with source.paint.part() as part:
         part.append(road, records)
     return part.index()

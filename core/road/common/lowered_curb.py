@@ -32,21 +32,21 @@ def lowered_points(rows: list[dict], road: Road, look: RoadLook) -> list[dict]:
 
     Returns a list of dict like `rows`, one for each row of ground cells that shows the step
     """
-    points = np.array([(row["fields"]["chain"], row["s"], row["u"], row["fields"]["height"], *road.to_map(row["s"], look.sign * row["u"]))
-                       for row in rows if row["fields"]["part"] == "bottom"],
-                      dtype=[("chain", int), *((name, float) for name in ("s", "d", "height", "x", "y"))])
+    bottoms = [(row["fields"]["chain"], row["s"], row["u"], row["fields"]["height"], 0.0, 0.0) for row in rows if row["fields"]["part"] == "bottom"]
+    points = np.array(bottoms, dtype=[("chain", int), *((name, float) for name in ("s", "d", "height", "x", "y"))])
+    points["x"], points["y"] = road.to_map(points["s"], look.sign * points["d"])
     points = without_outliers(np.sort(points, order="s"))
     s = np.ascontiguousarray(points["s"])
     # where a curb is low its place is known to some centimetres only
     full = points[~is_lowered(points, s)]
-    lowered = []
+    gaps = []
     for k in np.flatnonzero(np.diff(s) > CURBS.max_joined_gap):
         before, behind = s[k:k + 2]
         near = full[stretch_of(full["s"], before - CURBS.line_fit_length, behind + CURBS.line_fit_length)]
         line = _line_across(near, before, behind, road, look)
         if line is not None:
-            lowered += _seen_between(near, look, before, behind, line)
-    return lowered
+            gaps.append((before, behind, line, near["height"].max()))
+    return [row for gap, seen in zip(gaps, _seen_in_gaps(gaps, look) if gaps else ()) for row in _seen_between(*gap[:2], *seen)]
 
 
 def _line_across(near, before, behind, road, look):
@@ -74,16 +74,28 @@ def _line_across(near, before, behind, road, look):
     return partial(np.interp, xp=stations[order], fp=offsets[order])
 
 
-def _seen_between(near, look, first, last, offsets):
+def _seen_in_gaps(gaps, look):
+    """Of each gap stations and offsets of the middles of rows of ground cells on its line, and what `RoadLook.steps_up` gives of these.
+
+    gaps : at least one; of each the stations of both ends, the function from stations to offsets that leads across, and the height of the curb
+        about it, m
+    """
+    places, size = [], look.cells.row_size
+    for first, last, offsets, full in gaps:
+        s = size * (np.arange(np.floor(first / size), np.ceil(last / size)) + 0.5)
+        s = s[(s > first) & (s < last)]
+        # no median of some rows reaches from one gap into the next
+        places.append(np.pad([s, offsets(s), np.full(len(s), full)], [(0, 0), (0, CURBS.lowered_rows)], constant_values=np.nan))
+    s, u, full = np.concatenate(places, axis=1)
+    seen, begins = (s, u, *look.steps_up(s, u, full)), np.cumsum([0, *(columns.shape[1] for columns in places)])
+    return [[values[a:b - CURBS.lowered_rows] for values in seen] for a, b in zip(begins, begins[1:])]
+
+
+def _seen_between(first, last, s, u, lowered, height, bottom):
     """The places between two stations, m, at which the ground steps, as far as they lead on from the curb at either of them.
 
-    near : curb points about them
-    offsets : function from stations to outward offsets, m, of the line on which the ground is looked at
+    The others are as of `_seen_in_gaps`.
     """
-    s = look.cells.row_size * (np.arange(np.floor(first / look.cells.row_size), np.ceil(last / look.cells.row_size)) + 0.5)
-    s = s[(s > first) & (s < last)]
-    u = offsets(s)
-    lowered, height, bottom = look.steps_up(s, u, near["height"].max())
     runs = np.array([run for run in mask_runs(lowered) if np.ptp(run) >= CURBS.min_piece_steps], int).reshape(-1, 2)
     parted = np.r_[s[runs[:, 0]], last] - np.r_[first, s[runs[:, 1] - 1]] > CURBS.max_joined_gap
     reached = ~(np.logical_or.accumulate(parted)[:-1] & np.logical_or.accumulate(parted[::-1])[-2::-1])

@@ -251,10 +251,10 @@ class _Paths:
         members = np.array(self.continued, np.int64)
         positions = np.array([[np.interp(a, self.places[k][0], v) for v in self.places[k][1:]] for k in members]).reshape(-1, 2)
         middle = 0.5 * (a + b)
-        offset = {c: float(np.interp(middle, *self.places[c][:2])) for c in self.active}
+        offset, near = {c: float(np.interp(middle, *self.places[c][:2])) for c in self.active}, self.near(middle)
         steps = []
         for c in self.active:
-            farther = max(offset[c] - self.near(middle), 0.0)
+            farther = max(offset[c] - near, 0.0)
             gain = (b - a) * max(1.0 - CURBS.distance_penalty * farther, 0.1)
             # what all chains of one curb show of it: does any show it clearly, and which share of the methods see it? And how sharply this one does
             of_curb = [k for k in self.active if abs(offset[k] - offset[c]) <= CURBS.same_curb_distance]

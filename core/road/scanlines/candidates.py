@@ -106,10 +106,10 @@ def _rising(low, span, least):
     measured = np.isfinite(low)
     filled = np.where(measured, low, np.float32(-LINE_SEPARATION))
     top = cv2.dilate(filled, np.ones((1, span + 1), np.uint8), anchor=(0, 0))
-    # height of the nearest occupied cell before each, within the span
+    # height of the nearest occupied cell before each occupied one, within the span
     before = np.empty_like(low)
     before[:, :1], before[:, 1:] = np.nan, low[:, :-1]
-    empty = np.flatnonzero(np.isnan(before))
+    empty = np.flatnonzero(measured & np.isnan(before))
     flat, column = low.reshape(-1), empty % low.shape[1]
     for k in range(2, span + 1):
         enough = column >= k

@@ -37,12 +37,13 @@ class SurfaceProfiles:
     stations: np.ndarray   # (P,) m, middles of the rows
     offsets: np.ndarray   # (K,) m, middles of the cells, ascending
     height: np.ndarray   # (P, K) m above the expected height of the road under the vehicle
-    rough: np.ndarray   # (P, K) m
+    rough: np.ndarray   # (P, K) m, of few points, too: see `roughness_of_rows`
     brightness: np.ndarray   # brightness, scatter: (P, K) counts, as in GroundCells; NaN where nothing was measured
     scatter: np.ndarray
-    count: np.ndarray   # (P, K) points
+    count: np.ndarray   # count, freedom: (P, K), as in GroundCells
+    freedom: np.ndarray
 
-    NAMES = ("height", "rough", "brightness", "scatter", "count")
+    NAMES = ("height", "rough", "brightness", "scatter", "count", "freedom")
 
     def side(self, sign: int | float) -> SurfaceProfiles:
         """The cells of one side, 1 left or -1 right, outward from the reference line, as views; offsets count outward."""
@@ -71,6 +72,7 @@ class GroundCells:
     brightness: np.ndarray
     scatter: np.ndarray   # (R, C) float32 counts, standard deviation of those intensities, estimated from the lower quartile
     count: np.ndarray   # (R, C) float32, points of the lowest layer
+    freedom: np.ndarray   # (R, C) float32, degrees of freedom of the roughness, 0 where it is NaN
 
     @property
     def stations(self) -> np.ndarray:
@@ -122,6 +124,26 @@ def median_about(values: np.ndarray, reach: int) -> np.ndarray:
     return known_median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0), -1)
 
 
+def sum_about(values: np.ndarray, reach: int) -> np.ndarray:
+    """Sum of the rows from `reach` before to `reach` behind each one; of one shape with `values`, (R, ...)."""
+    return uniform_filter1d(values.astype(float), 2 * reach + 1, axis=0, mode="constant") * (2 * reach + 1)
+
+
+def roughness_of_rows(rough: np.ndarray, freedom: np.ndarray, median: Callable[[np.ndarray], np.ndarray],
+                      total: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Roughness of several rows of cells: the median of those with enough points for one of their own, else that of all their points together.
+
+    rough, freedom : (P, K), as in SurfaceProfiles
+    median, total : give median and sum of such values over those rows; NaN counts for nothing in the median
+
+    Returns (Q, K) m, NaN where even all points are too few
+    """
+    freedom = np.nan_to_num(freedom)
+    of_rows, together = median(np.where(freedom >= SURFACE.min_freedom, rough, np.nan)), total(freedom)
+    pooled = np.sqrt(np.maximum(total(np.nan_to_num(rough)**2 * freedom), 0.0) / np.maximum(together, SURFACE.min_freedom))
+    return np.where(np.isfinite(of_rows) | (together < SURFACE.min_freedom - 0.5), of_rows, pooled)
+
+
 def _ground_columns(column_size: float) -> int:
     """Columns of ground cells on either side of the reference line."""
     return int(np.ceil(FRAME.corridor / column_size))
@@ -129,7 +151,7 @@ def _ground_columns(column_size: float) -> int:
 
 def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callable[[np.ndarray], np.ndarray],
                  row_size: float = SURFACE.row_length, column_size: float = SURFACE.column_width,
-                 bright: Callable[[Points], np.ndarray] | None = None) -> GroundCells:
+                 bright: Callable[[Points], np.ndarray] | None = None, least: int = SURFACE.min_freedom) -> GroundCells:
     """The ground cells of a window of the road.
 
     points : Points of the window
@@ -137,6 +159,7 @@ def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callab
     road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
     row_size, column_size : m along and across the road
     bright : function of N Points; (N,) bool of those whose intensity counts. None where brightness and scatter are not wanted
+    least : degrees of freedom of a roughness that is given
     """
     half = _ground_columns(column_size)
     columns = 2 * half
@@ -157,10 +180,10 @@ def _ground_cells(points: Points, first_row: int, rows: int, road_height: Callab
     # few points tell no slope: their mean height is that of the middle of the cell only without the grade of the road
     grade = np.diff(road_height((first_row + np.arange(rows + 1)) * row_size)) / row_size
     z -= v * grade.take(row.take(owner))
-    height, rough = _planes(owner, count, u, v, z, _views(ground))
+    height, rough, freedom = _planes(owner, count, u, v, z, _views(ground), least)
     brightness, scatter = np.full((2, len(count)), np.nan) if bright is None else _looks(ground, owner, shape, column_size, bright)
     return GroundCells(first_row, -half, row_size, column_size,
-                 *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
+                 *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count, freedom)))
 
 
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
@@ -209,8 +232,8 @@ def _views(points):
     return (np.cumsum(np.bincount(views) > 0) - 1)[views] if len(views) else views
 
 
-def _planes(at, count, u, v, z, view):
-    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell, `at`.
+def _planes(at, count, u, v, z, view, least):
+    """Height at the middle of each cell, roughness, and its degrees of freedom, from a least-squares plane; points are sorted by cell, `at`.
 
     Two views of one place differ in height by what positions and mounting angles are off. That is no roughness of the ground: it is taken out.
     """
@@ -239,10 +262,10 @@ def _planes(at, count, u, v, z, view):
         off = np.bincount(of_view, dz - across.take(at) * du - along.take(at) * dv, points_of_view.size).reshape(-1, views)
         squares = np.maximum(squares - (off**2 / np.maximum(points_of_view, 1)).sum(1), 0.0)
         freedom = n - 2 - np.maximum((points_of_view > 0).sum(1), 1)
-    enough, any_ground = count >= SURFACE.min_plane_points, count >= SURFACE.min_layer_points
-    rough = np.sqrt(squares / np.maximum(freedom, 1))
+    enough, any_ground = count >= SURFACE.min_freedom + 3, count >= SURFACE.min_layer_points
+    rough, known = np.sqrt(squares / np.maximum(freedom, 1)), freedom >= least
     height = np.where(enough, mz - across * mu - along * mv, mz)
-    return np.where(any_ground, height, np.nan), np.where(freedom >= SURFACE.min_plane_points - 3, rough, np.nan)
+    return np.where(any_ground, height, np.nan), np.where(known, rough, np.nan), np.where(known, freedom, 0)
 
 
 def _looks(points, at, shape, column_size, bright):
@@ -364,7 +387,8 @@ class MeasuredGround:
         in_step([self.measured([(road, row, wanted) for row, wanted in zip(rows, profiled)])], self.survey.executor)
         half = _ground_columns(SURFACE.column_width)
         cells = self._kept_of(0, road, rows, (len(CELL_NAMES), SURFACE.window_rows, 2 * half))
-        values = dict(zip(CELL_NAMES, cells), **dict.fromkeys(("brightness", "scatter"), np.broadcast_to(np.float32(np.nan), cells.shape[1:])))
+        unknown = np.broadcast_to(np.float32(np.nan), cells.shape[1:])
+        values = dict(zip(CELL_NAMES, cells), brightness=unknown, scatter=unknown, freedom=unknown)
         ground = GroundCells(rows[0], -half, SURFACE.row_length, SURFACE.column_width, **values)
         wanted = [row for row, want in zip(rows, profiled) if want]
         if not wanted:
@@ -404,7 +428,7 @@ def ground_of_windows(survey: Survey, windows: Sequence[Wanted], arrays: SharedA
     Returns
         for each window where those that are wanted lie of:
         cells : (3, R, C) float32, the attributes CELL_NAMES of its GroundCells
-        profiles : (5, P, K) float32, the attributes NAMES of its SurfaceProfiles
+        profiles : (6, P, K) float32, the attributes NAMES of its SurfaceProfiles
     """
     measured = []
     for road, row, with_cells, with_profiles in windows:
@@ -424,9 +448,9 @@ def _profiles_of_window(survey, points, road, row):
     """The profiles of a window; where it and the road about it have few points, it is measured as one profile, which stands for each."""
     first, height, about = round(row * SURFACE.row_length / SURFACE.profile_row), partial(survey.road_height, road), SURFACE.rows_about_thin
 
-    def measured(points, first, rows, length):
+    def measured(points, first, rows, length, least=1):
         result = _ground_cells(points, first, rows, height, length, SURFACE.profile_column,
-                               lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead)
+                               lambda seen: np.abs(ahead_of_vehicle(survey, seen, seen.s)) <= SURFACE.farthest_ahead, least)
         result.height -= height(result.stations)[:, None]
         return result, is_thin(result.count, length, SURFACE.profile_column, SURFACE.thin_density)
 
@@ -436,6 +460,6 @@ def _profiles_of_window(survey, points, road, row):
     if not thin or not measured(survey.window(road, start * SURFACE.profile_row, (start + rows) * SURFACE.profile_row), start, rows,
                                 SURFACE.profile_row)[1]:
         return single
-    joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW)
+    joined, _ = measured(points, first // PROFILES_PER_WINDOW, 1, SURFACE.profile_row * PROFILES_PER_WINDOW, SURFACE.min_freedom)
     joined.count /= PROFILES_PER_WINDOW
     return replace(joined, **{name: np.repeat(getattr(joined, name), PROFILES_PER_WINDOW, axis=0) for name in SurfaceProfiles.NAMES})

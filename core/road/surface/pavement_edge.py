@@ -15,7 +15,7 @@ from ...common.parallel import by_rows
 from ..edges.road_edges import RoadEdges
 from ..weights import EDGE, SURFACE
 from .ground_change import HalfProfiles, other_ground_begins
-from .ground_grid import GroundCells, SurfaceProfiles, known_median
+from .ground_grid import GroundCells, SurfaceProfiles, known_median, roughness_of_rows, sum_about
 from .pavement_limit import cheapest_path, pavement_limits
 
 
@@ -65,7 +65,8 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     above = by_rows(lambda some: rows.height[some] - _rise(height, prior, cells, rows.stations[some], sign * rows.offsets), len(rows.stations))
     rows = replace(rows, height=above)
     places = rows.stations[::SURFACE.rows_per_step]
-    pooled_height, rough, brightness = (_pooled(values) for values in (rows.height, rows.rough, rows.brightness))
+    pooled_height, brightness = _pooled(rows.height), _pooled(rows.brightness)
+    rough = roughness_of_rows(rows.rough, rows.freedom, _pooled, lambda values: sum_about(values, SURFACE.pooled_rows // 2)[::SURFACE.rows_per_step])
     track_offset = sign * np.interp(places, stations, track)
     halves = HalfProfiles(rows.offsets, pooled_height, rough)
     changes = halves.changes(track_offset, max_width)

@@ -9,6 +9,7 @@ differ in nothing but their noise, which follows from the points in a cell. Pain
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
@@ -16,7 +17,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 from ...common.parallel import check_cancelled
 from ...curves.robust import MAD_TO_SIGMA
 from ..weights import SURFACE
-from .ground_grid import SurfaceProfiles, known_median, median_about
+from .ground_grid import SurfaceProfiles, known_median, median_about, roughness_of_rows, sum_about
 
 
 @dataclass(frozen=True)
@@ -42,15 +43,16 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
     cells = change_cell[:, None] + np.arange(-SURFACE.road_cells - SURFACE.inner_cells, SURFACE.outer_cells + SURFACE.cells_outside)
     inside_profile = (cells >= 0) & (cells < rows.height.shape[1])
-    height, rough, brightness, scatter, count = (np.where(inside_profile,
+    height, rough, brightness, scatter, count, freedom = (np.where(inside_profile,
                                                           np.take_along_axis(values, np.clip(cells, 0, values.shape[1] - 1), 1), np.nan)
-                                                 for values in (rows.height, rows.rough, rows.brightness, rows.scatter, rows.count))
-    measured, measured_rows = np.isfinite(height), _added(np.isfinite(height), SURFACE.averaged_rows)
-    coverage = _added(np.nan_to_num(count), SURFACE.averaged_rows)
-    height, rough, brightness, scatter = (median_about(values, SURFACE.averaged_rows) for values in (height, rough, brightness, scatter))
+                                                 for values in (rows.height, rows.rough, rows.brightness, rows.scatter, rows.count, rows.freedom))
+    measured, measured_rows = np.isfinite(height), sum_about(np.isfinite(height), SURFACE.averaged_rows)
+    coverage = sum_about(np.nan_to_num(count), SURFACE.averaged_rows)
+    about, total = (partial(over, reach=SURFACE.averaged_rows) for over in (median_about, sum_about))
+    height, brightness, scatter, rough = *map(about, (height, brightness, scatter)), roughness_of_rows(rough, freedom, about, total)
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :SURFACE.road_cells], 1)[:, None]
     off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, coverage, cells[:, 0])
-    own_rows = _added(measured & np.isfinite(off), SURFACE.own_rows)
+    own_rows = sum_about(measured & np.isfinite(off), SURFACE.own_rows)
     weight = np.minimum(measured_rows / SURFACE.min_known_rows, 1.0)
     costs = weight * np.nan_to_num(np.clip(off, 0.0, SURFACE.max_sigmas) ** 2 - SURFACE.other_sigmas ** 2) / 2
     # cell by cell outward, the cost of counting all cells before it as road
@@ -147,7 +149,7 @@ def _darker_patch(values, sigma, first):
     along, measured = np.zeros((2, len(change), columns.max() + 1))
     np.put_along_axis(along, columns, np.nan_to_num(change), 1)
     np.put_along_axis(measured, columns, np.isfinite(change).astype(float), 1)
-    usual = _added(along, SURFACE.patch_rows) / np.maximum(_added(measured, SURFACE.patch_rows), 1.0)
+    usual = sum_about(along, SURFACE.patch_rows) / np.maximum(sum_about(measured, SURFACE.patch_rows), 1.0)
     change = change - np.take_along_axis(usual, columns, 1)
     least = SURFACE.patch_edge_sigmas * known_median(sigma[:, :SURFACE.road_cells], 1)[:, None]
     sure = (np.isfinite(inner).sum(2) > 1) & (np.isfinite(outer).sum(2) > 1) & (change < -least)
@@ -187,11 +189,6 @@ def _along(total, whole):
     fixed = np.full((len(total), last - first + total.shape[1]), 1e3)
     np.put_along_axis(fixed, (whole - first)[:, None] + np.arange(total.shape[1]), total, 1)
     return cheapest_path(fixed, SURFACE.limit_shift_cost, SURFACE.largest_limit_shift_cost) - (whole - first)
-
-
-def _added(values, reach):
-    """Sum of every cell over the rows about it, so many either side."""
-    return uniform_filter1d(values.astype(float), 2 * reach + 1, axis=0, mode="constant") * (2 * reach + 1)
 
 
 def _painted(brightness, sigma):

@@ -69,13 +69,13 @@ class RoadLook:
         height = firsts[0] - levels[1] + slopes[1] * (size + middle)
         return levels[0] - levels[1], height, levels[1] - self.prior[row[:, 0]]
 
-    def steps_up(self, s: np.ndarray, u: np.ndarray, full: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def steps_up(self, s: np.ndarray, u: np.ndarray, full: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Whether the ground is that of a lowered curb at places in consecutive rows of cells.
 
         It steps up outward, more than the same rows show on the road beside them. Or it climbs from there to the sidewalk within a metre: where
         a ramp bends, the line through it hides the step.
 
-        s, u : (N,) m, stations of the middles of rows, and offsets; full : m, height of the curb where it is not lowered
+        s, u, full : (N,) m, stations of the middles of rows, offsets, and the height of the curb where it is not lowered
 
         Returns
             shown : (N,) bool

@@ -1,6 +1,7 @@
 """Streets that can be read in two ways, of which an analyst takes the second."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from lanewright.core.common.features import CORRECTIONS, Features
 from lanewright.core.corrections.apply import correct_lanes, correct_marking_lines
 from lanewright.core.corrections.corrections import corrections_from_features, taken_reading
 from lanewright.core.curves.model_selection import fit_curve
-from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.driving_lines import estimate_lanes, make_driving_lines
 from lanewright.core.markings.lines.fit import named_by_estimate
 from lanewright.core.markings.lines.painted_lines import PaintedLines, painted_lines_of
 from lined_streets import Street
@@ -20,8 +21,9 @@ NOTHING = np.empty((0, 3))
 def run(street, corrections=None):
     """The layers of driving lines and lanes, and the corrections, of a run."""
     wanted = corrections_from_features(Features("any", CORRECTIONS) if corrections is None else corrections, street.frame)
-    lines, elements, lanes = make_driving_lines(
-        PaintedLines.from_features(street.lines, street.frame), street.frame, taken=wanted.taken(street.frame))
+    painted = PaintedLines.from_features(street.lines, street.frame)
+    estimates = estimate_lanes(painted, street.frame, taken=wanted.taken(street.frame))
+    lines, elements, lanes = make_driving_lines(painted, street.frame, estimates=estimates)
     lines, _, lanes = correct_lanes(lines, elements, lanes, street.frame, wanted, 3.5, NOTHING)
     return lines.to_features(street.frame), lanes.to_features(street.frame), wanted
 
@@ -100,7 +102,7 @@ def named(street, lines=None):
                  width=0.12, rmse=0.005)
             for k in range(len(read)) for places in [np.c_[read.course.x, read.course.y, read.course.z][read.course.line(k)]]
             for fit in [fit_curve(places[:, 0], places[:, 1])]], street.frame, "")
-    return named_by_estimate(lines, street.frame, 3.5)
+    return named_by_estimate(lines, estimate_lanes(lines, street.frame))
 
 
 def test_dashes_may_part_lanes_of_one_direction_and_that_is_taken():
@@ -121,3 +123,17 @@ def test_dashes_may_part_lanes_of_one_direction_and_that_is_taken():
 def test_what_a_solid_line_between_two_lanes_parts_is_sure():
     lines = named(Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(0.0, kind="").paint(-3.5, kind=""))
     assert lines.kind.tolist() == ["edge", "centre", "edge"] and not any(lines.other)
+
+
+def test_the_name_of_a_line_tells_directions_where_an_analyst_confirmed_it_and_not_where_the_fit_gave_it():
+    street = Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(0.0, kind="", pattern="dashed").paint(-3.5, kind="")
+    lines = named(street)
+
+    def oncoming(lines):
+        found, *_ = make_driving_lines(lines, street.frame)
+        return next(row for _, row in found.to_features(street.frame) if row["direction"] < 0)
+
+    unnamed = oncoming(replace(lines, kind=np.full(3, "", object)))
+    assert json.loads(unnamed["other"])["lanes"] and oncoming(lines) == unnamed
+    sure = oncoming(replace(lines, status=np.array(["measured", "accepted", "measured"], object)))
+    assert sure["other"] is None and sure["confidence"] > unnamed["confidence"]

@@ -119,6 +119,13 @@ def test_two_drives_that_keep_away_from_both_curbs_show_that_something_is_left_o
     assert all(row["other"] is None for row in found.values())
 
 
+def test_a_lane_beside_a_curb_is_as_sure_as_the_room_and_the_drive_show_its_width():
+    """Driven in the middle of the room it has all of that; driven a little nearer to the line there may be a narrow gutter."""
+    middle, nearer = (Street(vehicle=-driven, again=(driven,)).paint(0.0, kind="centre") for driven in (1.8, 1.65))
+    sure, less_sure = (readings(street, edges=curbs(street, 3.6, -3.6)).values() for street in (middle, nearer))
+    assert all(row["confidence"] > 0.97 for row in sure) and all(row["confidence"] < 0.9 for row in less_sure)
+
+
 def test_a_row_of_parked_cars_between_lane_and_curb_is_no_second_reading_where_one_drove_beside_it():
     street = Street(vehicle=-1.75, again=(1.75,)).paint(0.0, kind="centre")
     assert all(row["other"] is None for row in readings(street, edges=curbs(street, 5.7, -5.7)).values())

@@ -202,7 +202,7 @@ def test_of_three_lanes_parted_by_dashes_alone_those_that_a_stop_line_crosses_le
 def test_the_curbs_of_an_island_bound_the_lanes_beside_it(edge):
     """Two lanes without a line between, and along them an island of 2.6 m whose line goes round it and closes.
 
-    Lanes have all the room beside it, 3.5 m as usual or, as where one enters a roundabout, 4.3 m.
+    Lanes have all the room beside it, 3.5 m as usual or, as where one enters a roundabout, 4.3 m, and are as sure as between lines.
     """
     street = Street(vehicle=-3.0, again=(3.0,)).paint(edge, kind="edge").paint(-edge, kind="edge")
     along = np.arange(4.0, 116.25, 0.25)
@@ -213,6 +213,7 @@ def test_the_curbs_of_an_island_bound_the_lanes_beside_it(edge):
     for line, row in street.lanes(edges=edges)[0]:
         east = np.asarray(line.coords)[:, 0] - EAST
         beside.setdefault(row["direction"], []).extend(street.offsets(line)[(east > 10.0) & (east < 110.0)])
+        assert row["confidence"] > 0.9
     for way in (1, -1):
         np.testing.assert_allclose(beside[way], -(edge + 1.3) / 2 * way, atol=0.03)
 

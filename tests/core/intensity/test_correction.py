@@ -1,6 +1,7 @@
 """Intensity correction: asphalt of one brightness near and far, whichever scanner saw it."""
 
 import html
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.asphalt_model import UNKNOWN_DISTANCE, VehicleDistances
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
+from lanewright.core.intensity.scatter import ScannerScatter
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, Points, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -75,6 +77,31 @@ def test_brightness_of_photographs_stays_as_it_is_wherever_the_vehicle_drove_and
     road_points, report = corrected(records)
     assert ("photographs" in report.reason) == photographs
     assert np.isnan(road_points.corrected).all() == photographs
+
+
+@pytest.mark.parametrize("light, count, photographs", [(0.3, 300_000, True), (0.3, 90_000, True), (0.0, 300_000, False)])
+def test_neighbours_that_are_little_alike_are_of_photographs_where_both_scanners_see_each_place_as_bright(light, count, photographs):
+    records, across, _ = street(count=count)
+    rng = np.random.default_rng(1)
+    metre, pixel = ((records["s"] // side, records["d"] // side + 40_000 // side) for side in (10_000, 400))
+    level = 4000 * np.exp(rng.normal(0, light, (61, 13))[metre]) if light else falling(across, records["scanner"])
+    records["intensity"] = np.rint(level * (1 + rng.normal(0, 0.05, (2000, 400))[pixel] + rng.normal(0, 0.042, len(records))))
+    _, report = corrected(records)
+    assert ("photographs" in report.reason) == photographs
+
+
+@pytest.mark.parametrize("new", [lambda s: s < 30, lambda s: s % 20 < 8])
+def test_asphalt_that_is_new_along_part_of_a_street_is_no_photograph_though_range_was_corrected(new):
+    """Both scanners see it as dark, wherever it lies across the road."""
+    records, _, _ = street(law=lambda across, scanner: np.full(len(across), 5000.0))
+    records["intensity"] = np.rint(records["intensity"] * np.where(new(records["s"] * 1e-4), 0.5, 1.0))
+    assert "photographs" not in corrected(records)[1].reason
+
+
+@pytest.mark.parametrize("nats, text", [(1.0, "Along 40 m .* as alike as in photographs.*"), (-1.0, ".* nearly as alike .*"), (-9.0, "")])
+def test_brightness_that_may_be_of_photographs_is_warned_of(nats, text):
+    scatter = ScannerScatter({}, {(0, window): np.array([window]) for window in range(3)}, nats)
+    assert re.fullmatch(text, scatter.doubt(20.0))
 
 
 @pytest.mark.parametrize("noise, shorter, count", [(0.02, 1, 240_000), (0.04, 8, 300_000)])

@@ -66,7 +66,7 @@ def questions(monkeypatch, survey, folder, last=None):
 
 @pytest.fixture(scope="module")
 def streets(made_survey):
-    return [made_survey(length=length, pulse_rate=60_000.0, rotation_rate=60.0) for length in (SHORT, LONG)]
+    return [made_survey(length=length, pulse_rate=40_000.0, rotation_rate=60.0) for length in (SHORT, LONG)]
 
 
 @pytest.fixture(scope="module")

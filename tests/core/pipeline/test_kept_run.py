@@ -97,26 +97,26 @@ def test_a_corrected_edge_or_lane_takes_the_stages_after_it_alone_and_gives_the_
     found, road_map = made(street, tmp_path, kept)
     assert found == alone[0]
     with monkeypatch.context() as patch:
-        without(patch, (*SURFACE, "fit_marking_lines", "make_driving_lines"))
+        without(patch, (*SURFACE, "traced_lines", "make_driving_lines"))
         assert made(street, tmp_path, kept, without_lane(road_map))[0] == alone[2]
         assert made(street, tmp_path, kept)[0] == alone[0]
     with monkeypatch.context() as patch:
         without(patch, READING)
         assert made(street, tmp_path, kept, moved_edge(road_map))[0] == alone[1]
         # taken back, nothing is made again but the image, of which there is one
-        without(patch, {*SURFACE, "fit_marking_lines", "make_driving_lines"} - {"make_intensity_image"})
+        without(patch, {*SURFACE, "traced_lines", "make_driving_lines"} - {"make_intensity_image"})
         assert made(street, tmp_path, kept)[0] == alone[0]
 
 
 def test_a_moved_line_takes_its_name_and_the_lanes_alone_and_is_never_that_of_another_correction(street, alone, tmp_path, monkeypatch, kept):
     _, road_map = made(street, tmp_path, kept)
-    without(monkeypatch, (*SURFACE, "fit_marking_lines"))
+    without(monkeypatch, (*SURFACE, "traced_lines"))
     moved = [moved_line(road_map, aside) for aside in (0.1, 0.2)]
     found = [made(street, tmp_path, kept, corrections)[0] for corrections in moved]
     assert found[0] != found[1]
     monkeypatch.undo()
     assert [made(street, tmp_path, corrections=corrections)[0] for corrections in moved] == found
-    without(monkeypatch, (*SURFACE, "fit_marking_lines", "named_by_estimate", "make_driving_lines"))
+    without(monkeypatch, (*SURFACE, "traced_lines", "estimate_lanes", "make_driving_lines"))
     assert made(street, tmp_path, kept, moved[0])[0] == found[0]
 
 

@@ -7,7 +7,7 @@ import pytest
 import shapely
 from lanewright.core.pipeline.road_map import make_road_map
 
-PULSES = {"pulse_rate": 60_000.0, "rotation_rate": 100.0}
+PULSES = {"pulse_rate": 45_000.0, "rotation_rate": 75.0}
 
 
 def wrong_lengths(lines, truth):

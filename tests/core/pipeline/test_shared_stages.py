@@ -19,7 +19,7 @@ KILLED_IN = ("surface_points", "corrected_of_stretch", "tiles_of_image", "paint_
 
 @pytest.fixture(scope="module")
 def sample(made_survey):
-    return made_survey(length=40.0, pulse_rate=40_000.0)
+    return made_survey(length=30.0, pulse_rate=40_000.0)
 
 
 class Noting(WorkerProcesses):

@@ -94,7 +94,7 @@ def parts_in(state):
 
 @pytest.mark.parametrize("planes", [ScanlineSettings(), ScanlineSettings(interval=10.0)])
 def test_a_task_reads_no_points_but_those_that_its_result_is_kept_by(made_survey, tmp_path, monkeypatch, planes):
-    made, path = made_survey(length=150.0, pulse_rate=15_000.0)
+    made, path = made_survey(length=90.0, pulse_rate=15_000.0)
     watched, section = Watched(tmp_path), SectionStore.section
 
     def noted(store, road, number):
@@ -176,16 +176,16 @@ def write_tiles(path, folder, left_out=0.0):
     return paths
 
 
-@pytest.mark.parametrize("workers", [0, 2])
-def test_of_four_tiles_one_that_changed_is_read_again_and_the_curbs_far_from_it_stay(made_survey, tmp_path, workers):
-    sample, heard, far_heard = made_survey(length=120.0, pulse_rate=20_000.0), Heard(), Heard()
+def test_of_four_tiles_one_that_changed_is_read_again_and_the_curbs_far_from_it_stay(made_survey, tmp_path):
+    """Worker processes go on from what threads have left, and threads from what those have left."""
+    sample, heard, far_heard = made_survey(length=80.0, pulse_rate=20_000.0), Heard(), Heard()
     tiles = write_tiles(sample[1], tmp_path)
-    boundaries(sample, tmp_path / "work", clouds=tiles, workers=workers)
+    boundaries(sample, tmp_path / "work", clouds=tiles)
     write_tiles(sample[1], tmp_path, 0.1)
-    changed = numbers_of(boundaries(sample, tmp_path / "work", clouds=tiles[::-1], workers=workers, progress=heard))
+    changed = numbers_of(boundaries(sample, tmp_path / "work", clouds=tiles[::-1], workers=2, progress=heard))
     assert changed == numbers_of(boundaries(sample, "", clouds=tiles))
     assert heard.says("3 of 4 parts of the work were finished by an earlier run") and not heard.says("made anew")
-    boundaries(sample, tmp_path / "work", clouds=tiles[:3], workers=workers, progress=far_heard)
+    boundaries(sample, tmp_path / "work", clouds=tiles[:3], progress=far_heard)
     assert far_heard.says("3 of 3 parts")
 
 

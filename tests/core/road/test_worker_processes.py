@@ -52,7 +52,7 @@ def test_three_threads_find_what_one_finds(by_threads):
 
 @pytest.mark.slow
 def test_worker_processes_find_what_threads_find_and_leave_nothing(by_threads, python):
-    executor = WorkerProcesses(python, 3)
+    executor = WorkerProcesses(python, 2)
     assert numbers_of(boundaries(executor)) == by_threads
     assert not executor.folder.exists()
 

@@ -131,7 +131,7 @@ def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, surveyed, 
     assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
 
 
-@pytest.mark.parametrize("lacking, said", [("points", "All gps_time values are equal"), ("trajectory", "The trajectory has no time")])
+@pytest.mark.parametrize("lacking, said", [("points", "The point cloud has no gps_time that changes"), ("trajectory", "The trajectory has no time")])
 def test_several_passes_without_time_are_warned_of_by_the_name_of_what_lacks_it(tmp_path, lacking, said):
     there, back = drive(PATH), drive(PATH[::-1] + [0.0, 3.0], start=3000.0)
     both = [np.r_[a, b] for a, b in zip(surveyed_points(there), surveyed_points(back))]
@@ -139,6 +139,23 @@ def test_several_passes_without_time_are_warned_of_by_the_name_of_what_lacks_it(
     heard = Heard()
     open_survey([write_cloud(tmp_path / "twice.laz", *both[:3 if lacking == "points" else 4], crs=CRS)], driven, progress=heard)
     assert any(re.search(f"{said}.*Driven 2 times over 1 road.*passes are mixed.*Export points and trajectory", text) for text in heard.warned)
+
+
+def test_a_file_whose_points_all_have_one_time_is_read_as_one_without_times(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    half, heard = np.arange(len(x)) % 2 == 0, Heard()
+    survey = open_survey([write_cloud(tmp_path / f"{name}.laz", x[part], y[part], z[part], times, crs=CRS) for name, part, times in
+                          (("timed", half, time[half]), ("stopped", ~half, np.full((~half).sum(), time.mean())))], trajectory, progress=heard)
+    assert not survey.has_time and len(contents(survey)) == pytest.approx(len(x), rel=0.01)
+    assert any(re.search("1 of 2 files, such as .*stopped.laz, have no gps_time that changes", text) for text in heard.warned)
+
+
+@pytest.mark.parametrize("files, time_of, has_time", [(8, np.mean, True), (30, lambda times: 0.0, False)])
+def test_frames_with_a_time_each_have_times_and_small_tiles_that_share_one_have_none(street, tmp_path, files, time_of, has_time):
+    trajectory, (x, y, z, time), _ = street
+    parts = enumerate(np.array_split(np.argsort(time, kind="stable"), files))
+    clouds = [write_cloud(tmp_path / f"{k}.laz", x[part], y[part], z[part], np.full(len(part), time_of(time[part])), crs=CRS) for k, part in parts]
+    assert open_survey(clouds, trajectory).has_time == has_time
 
 
 @pytest.mark.parametrize("height", [0.0, 0.45, -0.3])

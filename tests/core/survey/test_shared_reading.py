@@ -18,6 +18,7 @@ from lanewright.core.execution.phase import Threads
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.survey import blocks
 from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey.adjustment import trajectory_fit
 from lanewright.core.survey.open_survey import open_survey
 from lanewright.core.survey.store import section_store
 from lanewright.core.survey.survey import SurveySettings, survey_in_file
@@ -27,16 +28,22 @@ SETTINGS = SurveySettings(block=700)   # points
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    # few samples of the height: only the first blocks are looked at by the caller
-    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=2000, height_samples=20))
+    few_samples(monkeypatch)
+    monkeypatch.setattr(blocks, "READING", replace(blocks.READING, part_points=2000))
     monkeypatch.setattr(section_store, "STRETCH_POINTS", 2000)
+
+
+def few_samples(patch):
+    """Only the first blocks are looked at by the caller for the height, and one place for what does not fit."""
+    patch.setattr(blocks, "READING", replace(blocks.READING, height_samples=20))
+    patch.setattr(trajectory_fit, "PLACES_READ", 1)
 
 
 @pytest.fixture(scope="module")
 def street(tmp_path_factory):
     """(trajectory, paths) of a bend that is driven twice, the second time 6 cm aside, in a LAS and a LAZ file."""
     folder = tmp_path_factory.mktemp("street")
-    path = chain(ahead(80), bend(60, 60), ahead(60))
+    path = chain(ahead(30), bend(30, 60), ahead(30))
     drives = [drive(path, start=1000.0), drive(path, start=2000.0)]
     clouds = []
     for k, (trajectory, kind) in enumerate(zip(drives, ("las", "laz"))):
@@ -70,7 +77,7 @@ def known(survey):
 @pytest.fixture(scope="module")
 def by_threads(street):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(blocks, "READING", replace(blocks.READING, height_samples=20))
+        few_samples(patch)
         return opened(street)
 
 
@@ -80,7 +87,7 @@ def python():
 
 
 def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_threads, python):
-    executor = WorkerProcesses(python, 3)
+    executor = WorkerProcesses(python, 2)
     assert opened(street, executor) == by_threads
     assert not executor.folder.exists()
 
@@ -109,7 +116,7 @@ def test_neither_blocks_nor_parts_change_a_point(street, by_threads, python, mon
 def test_a_survey_without_times_is_read_alike(street, python):
     trajectory, clouds = street
     alone = replace(trajectory, has_time=False), clouds
-    assert opened(alone, WorkerProcesses(python, 2)) == opened(alone)
+    assert opened(alone, WorkerProcesses(python, 1)) == opened(alone)
 
 
 def killed_while_it_reads(executor):
@@ -274,7 +281,7 @@ def test_halves_of_a_part_are_the_part(street, by_threads, tmp_path):
 
 def test_a_file_that_was_written_again_with_other_intensities_is_read_again(street, tmp_path):
     trajectory, clouds = street
-    x, y, z, measured = surveyed_points(drive(chain(ahead(80), bend(60, 60), ahead(60)), start=1000.0), lines=4)
+    x, y, z, measured = surveyed_points(drive(chain(ahead(30), bend(30, 60), ahead(30)), start=1000.0), lines=4)
     again = write_cloud(tmp_path / "again.las", x, y, z, measured, crs="EPSG:32632", intensity=np.arange(len(x)) % 997)
     one, work = (trajectory, [again]), str(tmp_path / "work")
     before = opened(one, work_folder=work)

@@ -57,7 +57,7 @@ def test_a_line_ends_at_an_island_and_goes_on_past_one_that_lies_beside_it(aside
 def kept_of(course, aside=0.0, at=27.0):
     """First stations of the dashes of a line along a course that are kept, one of which lies aside."""
     dashes = [strand(first, first + 3.0, lambda s, off=aside * (first == at): course(s) + off) for first in np.arange(0.0, 81.0, 9.0)]
-    line = without_strays(LinkedLine(dashes), CommonTrend([]), EdgesBeside([]), MarkingLineSettings().max_gap, MarkingLineSettings().max_bridge)
+    line, = without_strays([LinkedLine(dashes)], CommonTrend([]), EdgesBeside([]), MarkingLineSettings().max_gap, MarkingLineSettings().max_bridge)
     return [one.first for one in line.strands]
 
 

@@ -75,7 +75,7 @@ def test_worker_processes_find_what_threads_find(monkeypatch):
     assert parts is not None and len(of_parts) >= 2 and whole is None and len(alone) == 1 and len(pieces) == len(STRIPES) + len(DASHES) + 1
     assert found_by(Threads(3)) == known
     monkeypatch.setattr(phases, "TASK_POINTS", 200)
-    assert found_by(WorkerProcesses(find_interpreter(), 2)) == known
+    assert found_by(WorkerProcesses(find_interpreter(), 1)) == known
     assert found_by(Threads(2), 3) == 3 * known
 
 

@@ -310,7 +310,7 @@ def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_p
 @pytest.mark.slow
 def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
     bar = strip(30, 34, 1.0, 1.3)
-    s, d = strewn(48, 4, -4, 3000)
+    s, d = strewn(24, 4, -4, 3000, start=20)
     rng = np.random.default_rng(9)
 
     def seen(painted):

@@ -13,15 +13,15 @@ NOISE = 0.012   # m, of heights: that of a scanner of 64 beams
 TIP = 10.0      # x at which the sure curb ends, 1 m before its corner begins
 
 
-def led(height, beside=0.0, turned=0.0, gutter=0.0, **options):
+def led(height, beside=0.0, turned=0.0, gutter=0.0):
     """What continues from a left-hand curb that ends at TIP, along a corner of 5 m radius into a side street; heights of the rest in m.
 
     gutter : slope of the ground on either side of a gutter, whose bottom runs 15 cm before the corner's edge
     """
     area = side_street(radius=5.0)
-    x, y, z, _ = scan(area, height=height, noise=NOISE, spacing=0.03, **options)
+    x, y, z, _ = scan(area, height=height, noise=NOISE, spacing=0.03, within=(3.0, 0.0, 21.0, 13.0))
     z[shapely.contains_xy(shapely.box(-9, 3.5, TIP, 30), x, y)] += 0.10 - height
-    near = np.flatnonzero((x > TIP - 2.0) & (x < TIP + 8.0) & (y > 1.0) & (y < 12.0))
+    near = np.flatnonzero((gutter > 0.0) & (x > TIP - 2.0) & (x < TIP + 8.0) & (y > 1.0) & (y < 12.0))
     z[near] += gutter * shapely.distance(shapely.points(x[near], y[near]), shapely.boundary(shapely.buffer(area, 0.15, quad_segs=64)))
     raster = averaged(ground_raster(x, y, z, 0.05), 0.05)
     ends = FollowedEnds(*np.array([[TIP, 3.5 + beside, 0.0, np.cos(turned), np.sin(turned), -1.0, np.nan, 0]]).T)

@@ -8,7 +8,7 @@ from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
-from lanewright.core.road.surface.ground_grid import MeasuredGround
+from lanewright.core.road.surface.ground_grid import MeasuredGround, median_about, roughness_of_rows, sum_about
 from lanewright.core.road.surface.pavement_lines import with_pavement_edges
 from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
@@ -17,7 +17,7 @@ from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
-LENGTH, SENSOR, REACH, EAST, NORTH = 60.0, 2.0, 12.0, 500_000.0, 5_400_000.0
+LENGTH, SENSOR, REACH, EAST, NORTH = 60.0, 2.0, 9.0, 500_000.0, 5_400_000.0
 HALF = 3.5     # m, half the asphalt
 GRAVEL = 0.3   # m, strip of gravel between asphalt and grass
 
@@ -117,6 +117,18 @@ def test_cells_with_few_points_lie_as_high_as_the_road_where_it_climbs():
     _, profiles = MeasuredGround(survey).windows(0, [40, 50, 60], [True] * 3)
     few = (profiles.count * 5 < 6) & (np.abs(profiles.offsets) < HALF - 0.1) & np.isfinite(profiles.height)
     assert few.sum() > 50 and np.abs(profiles.height[few]).max() < 0.012
+
+
+def test_cells_of_four_points_are_as_rough_together_as_the_verge_and_the_road_on_which_they_lie():
+    rng = np.random.default_rng(1)
+    survey = street(density=400, gravel=0.0, keep=lambda s, d: (np.abs(d) < 2.2) | (rng.random(len(d)) < 0.1))
+    _, profiles = MeasuredGround(survey).windows(0, [20, 30, 40, 50, 60, 70, 80, 90], [True] * 8)
+    rows = profiles.side(1)
+    rough = roughness_of_rows(rows.rough, rows.freedom, *(lambda values, over=over: over(values, 3) for over in (median_about, sum_about)))[3:-3]
+    road, verge = ((rows.offsets > low) & (rows.offsets < high) for low, high in ((2.3, HALF - 0.1), (HALF + 0.1, 7.0)))
+    assert rows.count[:, road | verge].mean() < 4.5 and np.isfinite(rough[:, road | verge]).mean() > 0.95
+    assert np.nanmedian(rough[:, road]) == pytest.approx(0.003, rel=0.15) and np.nanmedian(rough[:, verge]) == pytest.approx(0.02, rel=0.15)
+    assert min(np.nanmean(rough[:, road] < 0.0075), np.nanmean(rough[:, verge] > 0.0075)) > 0.95
 
 
 def test_drawn_edges_lie_neither_inward_nor_outward_by_a_centimetre():
@@ -364,7 +376,9 @@ def test_the_road_ends_where_a_flush_sidewalk_twice_as_bright_begins(falloff):
 
 def test_a_flush_bicycle_path_is_no_road_where_its_far_side_is_as_dark_as_the_road():
     """Along 24 m of the street, the outer half of the path is no brighter than asphalt."""
-    path = np.vectorize(lambda s, d: 1.0 if abs(d) < HALF or (18 < s < 42 and abs(d) > HALF + 1.3) else 2.0)
+    def path(s, d):
+        return np.where((np.abs(d) < HALF) | (s > 18) & (s < 42) & (np.abs(d) > HALF + 1.3), 1.0, 2.0)
+
     survey = street(half=wide, grey_of=path)
     edges = found(survey)
     assert min(covered(edges, survey, side) for side in (1, -1)) >= 0.9

@@ -20,7 +20,7 @@ def road(left, right, hidden=(), edges=""):
     ground = count > 0
     ground[np.ix_(list(hidden), np.flatnonzero(offsets > 2))] = False
     flat = np.zeros((ROWS, COLUMNS), np.float32)
-    cells = GroundCells(40, -COLUMNS // 2, 0.5, 0.25, flat, flat, flat, flat, count)
+    cells = GroundCells(40, -COLUMNS // 2, 0.5, 0.25, flat, flat, flat, flat, count, flat)
     edge = np.full(ROWS, 4.0)
     return Carriageway(cells, flat, ground, -edge, edge, *(np.full(ROWS, side in edges) for side in ("right", "left")), 0.05)
 

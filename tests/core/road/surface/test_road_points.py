@@ -19,7 +19,7 @@ def carriageway(rows, seed=5):
     left, right = 4 + rng.normal(0, 0.3, rows), -5 + rng.normal(0, 0.3, rows)
     left[rng.random(rows) < 0.2] = np.nan
     none = np.empty((rows, 0))
-    cells = GroundCells(FIRST_ROW, FIRST_COLUMN, SURFACE.row_length, SURFACE.column_width, height.astype(np.float32), none, none, none, none)
+    cells = GroundCells(FIRST_ROW, FIRST_COLUMN, SURFACE.row_length, SURFACE.column_width, height.astype(np.float32), none, none, none, none, none)
     return Carriageway(cells, height.astype(np.float32), none, right, left, none, none, TOLERANCE)
 
 

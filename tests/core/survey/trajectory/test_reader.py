@@ -334,14 +334,14 @@ def test_any_encoding_and_line_ending(tmp_path, encoding, ending):
 
 
 @pytest.mark.slow
-def test_half_a_million_rows_cost_a_few_times_what_cutting_them_costs(tmp_path):
+def test_two_hundred_thousand_rows_cost_a_few_times_what_cutting_them_costs(tmp_path):
     """Not a Python loop over rows; in processor seconds, beside the same machine's own."""
     row = "318204000.123456,500123.4567,5400123.4567,101.2345,0.012345,0.012345,91.234567\n"
-    (tmp_path / "t.csv").write_text("time,x,y,z,roll,pitch,heading\n" + row * 500_000)
+    (tmp_path / "t.csv").write_text("time,x,y,z,roll,pitch,heading\n" + row * 200_000)
     begun = time.process_time()
-    assert len([line.split(",") for line in open(tmp_path / "t.csv", encoding="utf-8")]) == 500_001
+    assert len([line.split(",") for line in open(tmp_path / "t.csv", encoding="utf-8")]) == 200_001
     cut = time.process_time() - begun
-    assert len(read_trajectory(tmp_path / "t.csv")) == 500_000
+    assert len(read_trajectory(tmp_path / "t.csv")) == 200_000
     assert time.process_time() - begun - cut < 10 * cut
 
 
