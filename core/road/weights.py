@@ -24,6 +24,7 @@ class CURBS:
     max_bed_slope: float = 1.5   # rise over run of plants or a wall right behind a curb; what is steeper is a face itself
     min_bed_points: int = 8   # points that give the slope of plants or a wall
     max_face_width: float = 0.10   # m across
+    hidden_face_spacings: float = 5.0   # mean spacings of points beside it from which a gap before raised ground hides a face: 1 in 150 is chance
     face_noise_sigmas: float = 4.0   # sigmas by which noise widens a face
     candidate_height_share: float = 0.8   # share of the least height below which a rise is no step in any direction
     min_step_sigmas: float = 4.0   # a step must stand this far above the noise of its road side

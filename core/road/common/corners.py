@@ -116,7 +116,7 @@ def _measure(lines, rows, cells, owner, index, min_height, max_height):
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
     point = lines.point.take(index)
     patches = StepPatches(owner, lines.u.take(point) - edge.take(owner), lines.s.take(point) - middle.take(owner), lines.h.take(index),
-                          lines.noise[rows], min_height, max_height)
+                          lines.noise[rows], min_height, max_height, unplaced=not lines.along.any())
     corners = patches.corners()
     skewed = np.flatnonzero(np.abs(corners["skew"]) > CURBS.remeasure_skew)
     if len(skewed):
@@ -138,13 +138,14 @@ class StepPatches:
     min_height, max_height : m, of a step
     skew : (M,) m outward per m along that was taken out of the offsets, or 0
     graded : may the road rise along the curb? Points of few scan lines do not tell such a grade from a slope
+    unplaced : is it unknown from where the points were measured? From the road every face is seen, from the sidewalk it looks away
     """
 
     def __init__(self, owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray,
-                 min_height: float, max_height: float, skew: np.ndarray | float = 0.0, graded: bool = False):
+                 min_height: float, max_height: float, skew: np.ndarray | float = 0.0, graded: bool = False, unplaced: bool = False):
         self.owner, self.u, self.s, self.h = owner, u, s, h
         self.scanner_noise, self.min_height, self.max_height = scanner_noise, min_height, max_height
-        self.count, self.skew, self.graded = len(scanner_noise), skew, graded
+        self.count, self.skew, self.graded, self.unplaced = len(scanner_noise), skew, graded, unplaced
 
     def straightened(self, which: np.ndarray, skew: np.ndarray) -> StepPatches:
         """The candidates `which`, (K,) indices, with the direction of each face, (K,) m outward per m along, taken out of the offsets."""
@@ -153,7 +154,7 @@ class StepPatches:
         members = np.flatnonzero(number[self.owner] >= 0)
         owner = number[self.owner[members]]
         return StepPatches(owner, self.u[members] - skew[owner] * self.s[members], self.s[members], self.h[members], self.scanner_noise[which],
-                           self.min_height, self.max_height, skew, self.graded)
+                           self.min_height, self.max_height, skew, self.graded, self.unplaced)
 
     def corners(self) -> dict[str, np.ndarray]:
         """The corner of every candidate.
@@ -184,7 +185,7 @@ class StepPatches:
         members = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (number.take(owner) >= 0))
         skew = self.skew if isinstance(self.skew, float) else self.skew[candidates]
         near = StepPatches(number.take(owner.take(members)), u.take(members), s.take(members), h.take(members), self.scanner_noise[candidates],
-                           self.min_height, self.max_height, skew, self.graded)
+                           self.min_height, self.max_height, skew, self.graded, self.unplaced)
         result = dict(likely=likely)
         for name, values in near._faces(rise.take(members), **{name: values[candidates] for name, values in ground.items()}).items():
             result[name] = np.zeros(count, values.dtype)
@@ -217,7 +218,8 @@ class StepPatches:
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(CURBS.face_lower_share * height, 2 * scatter), 0.45 * height)
         upper = np.maximum(np.minimum(CURBS.face_upper_share * height, height - 2 * scatter), 0.55 * height)
-        face = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & (rise > lower.take(owner)) & (rise < upper.take(owner)))
+        low = rise <= lower.take(owner)
+        face = np.flatnonzero((np.abs(u) < CURBS.face_search_half_width) & ~low & (rise < upper.take(owner)))
         owner, u, s, rise = (v.take(face) for v in (owner, u, s, rise))
         skew, straight = _skew(owner, u, s, scatter, count)
         mid, spread = _median_and_spread(owner, straight, count)
@@ -236,9 +238,22 @@ class StepPatches:
         run = np.where(n_face < 3, 0.0, np.maximum(run - CURBS.face_noise_sigmas * scatter, 0.0))
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
-                & (n_face >= 1) & (run <= CURBS.max_face_width))
+                & ((n_face >= 1) | self._hidden_face(low, np.minimum(n_road, n_behind)))
+                & (run <= CURBS.max_face_width))
         return dict(s=station, u=corner + self.skew * station, h=level + slope * corner + grade * station, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
+
+    def _hidden_face(self, low, beside):
+        """(M,) bool, may a face look away from the scanner there, as less of the ground before the rising cell was seen than by chance?
+
+        low : (N,) bool, points of the road; beside : (M,) points on the side that has fewer. Such a face stands beneath the edge of its top
+        """
+        if not self.unplaced:
+            return np.zeros(self.count, bool)
+        before = np.flatnonzero(low & (self.u < 0.0))
+        gap = np.full(self.count, CURBS.face_search_half_width)
+        np.minimum.at(gap, self.owner.take(before), -self.u.take(before))
+        return (gap > CURBS.max_face_width) & (gap * beside > CURBS.hidden_face_spacings * CURBS.road_side_length)
 
     def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and is level or a bed of plants."""

@@ -274,7 +274,10 @@ def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
     """Lines of consecutive vertices, split where these are far apart."""
     if not len(row):
         return Scanlines.none()
-    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > SCANLINE.max_vertex_gap) | (np.abs(np.diff(h)) > 2 * SCANLINE.max_vertex_gap)]
+    gap, rise = np.where(np.diff(row) == 0, np.diff(d), np.inf), np.abs(np.diff(h))
+    # a line straight across would be the face of a step that nobody saw
+    hidden_face = (gap > np.maximum(CURBS.hidden_face_spacings * _spacing_beside(gap), CURBS.max_face_width)) & (rise > SCANLINE.min_steep_rise)
+    new = np.r_[True, (gap > SCANLINE.max_vertex_gap) | (rise > 2 * SCANLINE.max_vertex_gap) | hidden_face]
     begins = np.flatnonzero(new)
     count = len(begins)
     # noise disorders the offsets on a face
@@ -282,3 +285,10 @@ def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
     lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
                       np.r_[begins, len(row)], d, h, intensity.astype(np.float32))
     return lines[np.diff(lines.first) >= SCANLINE.min_slice_line_vertices]
+
+
+def _spacing_beside(gap):
+    """(N,) m, mean of a few gaps between vertices before or behind each of (N,) gaps, where they are wider."""
+    count = SCANLINE.min_cells_behind
+    means = np.lib.stride_tricks.sliding_window_view(np.abs(np.pad(gap, count, constant_values=np.inf)), count).mean(1)
+    return np.maximum(means[:len(gap)], means[count + 1:])

@@ -57,6 +57,17 @@ def test_a_slope_that_the_user_asks_for_is_kept():
     assert len(found(street(curb=0.10, face=0.10), CurbSettings(slope=60.0))) == 0
 
 
+def test_without_times_a_curb_whose_face_looks_away_from_a_scanner_on_the_sidewalk_is_found_beneath_the_edge_of_its_top():
+    cloud = street()
+    hidden = (cloud[1] > 3.4) & (cloud[1] < 3.51)
+    survey = survey_of(tuple(column[~hidden] for column in cloud))
+    assert not len(measured(detect_curbs(survey), "left"))   # from the road every face is seen
+    survey.has_time = False
+    points = measured(detect_curbs(survey), "left")
+    assert points[:, 3].min() < 1.5 and points[:, 3].max() > streets.LENGTH - 1.5
+    np.testing.assert_allclose(points[:, 1], 3.5, atol=0.04)
+
+
 def test_a_curb_lower_than_five_centimetres_is_found_where_it_continues():
     curbs = found(street(curb=0.03))
     for side, offset in (("left", 3.5), ("right", -3.5)):

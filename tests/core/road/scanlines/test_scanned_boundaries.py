@@ -75,6 +75,13 @@ def test_without_times_the_boundary_is_found_among_the_points():
     on_the_curb(corners(survey_of(scanned(noise=NOISE, pulses=200_000.0), has_time=False)), 2 * NOISE)
 
 
+def test_without_times_no_boundary_is_drawn_where_a_scanner_on_the_sidewalk_saw_no_face():
+    cloud = scanned(noise=NOISE, pulses=200_000.0)
+    hidden = (cloud.y > 3.35) & (cloud.y < 3.51) & (cloud.z < 0.11)
+    found = curbs_from_scanlines(SurveyScanlines(survey_of(cloud[~hidden], has_time=False)))
+    assert {row["side"] for row in found.rows if row["status"] == "measured"} == {"right"}
+
+
 def test_a_single_scan_line_has_no_boundary_and_no_complaint():
     cloud = scanned()
     assert len(corners(survey_of(cloud[cloud.line == 300]))) == 0
