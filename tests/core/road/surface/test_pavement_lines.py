@@ -126,9 +126,10 @@ def test_cells_of_four_points_are_as_rough_together_as_the_verge_and_the_road_on
     rows = profiles.side(1)
     rough = roughness_of_rows(rows.rough, rows.freedom, *(lambda values, over=over: over(values, 3) for over in (median_about, sum_about)))[3:-3]
     road, verge = ((rows.offsets > low) & (rows.offsets < high) for low, high in ((2.3, HALF - 0.1), (HALF + 0.1, 7.0)))
-    assert rows.count[:, road | verge].mean() < 4.5 and np.isfinite(rough[:, road | verge]).mean() > 0.95
-    assert np.nanmedian(rough[:, road]) == pytest.approx(0.003, rel=0.15) and np.nanmedian(rough[:, verge]) == pytest.approx(0.02, rel=0.15)
-    assert min(np.nanmean(rough[:, road] < 0.0075), np.nanmean(rough[:, verge] > 0.0075)) > 0.95
+    assert rows.count[:, road | verge].mean() < 4.5 and np.isfinite(rough[:, road | verge]).mean() > 0.9
+    of_road, of_verge = (values[np.isfinite(values)] for values in (rough[:, road], rough[:, verge]))
+    assert np.median(of_road) == pytest.approx(0.003, rel=0.15) and np.median(of_verge) == pytest.approx(0.02, rel=0.15)
+    assert np.mean(of_road < 0.0075) > 0.98 and np.mean(of_verge > 0.0075) > 0.95
 
 
 def test_drawn_edges_lie_neither_inward_nor_outward_by_a_centimetre():
