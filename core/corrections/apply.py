@@ -266,9 +266,10 @@ class _Lines(_LineKind):
         fit = fit_curve(places[:, 0], places[:, 1])
         free = max((piece["line"] for piece in pieces), default=0) + 1
         widths = [piece["width"] for piece in pieces if np.isfinite(piece["width"])]
-        blank = dict(road=correction.road, line=free, kind="", pattern=USUAL_PATTERN, station=correction.station, end=correction.station,
+        blank = dict(road=correction.road, line=free, pattern=USUAL_PATTERN, station=correction.station, end=correction.station,
                      width=float(np.median(widths)) if widths else np.nan)
-        attributes = {name: value for name, value in (("kind", correction.kind), ("pattern", correction.pattern)) if value}
+        # what the estimate named a line that was moved is no name by hand
+        attributes = dict(kind=correction.kind, pattern=correction.pattern or (like or blank)["pattern"])
         u, _ = fit.curve.project(places[[0, -1], 0], places[[0, -1], 1])
         piece = dict(blank if like is None else like, **attributes, status=DRAWN, curve=fit.curve, arc=u, rmse=np.nan,
                      offset=correction.offset, places=places)

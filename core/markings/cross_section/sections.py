@@ -31,8 +31,8 @@ class CrossSections:
     d: RowTable   # RowTable of (L, K), offset and height of each line, NaN where it is not
     z: RowTable
     seen: RowTable   # (L, K) False where the line itself was bridged
-    kinds: list   # per line, of its longest piece
-    patterns: list
+    kinds: list   # per line, of its longest piece that has one
+    patterns: list   # per line, of its longest piece
     drawn: RowTable   # (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
     names: list
     number: RowTable   # (L, K) number of the line in its layer at each place; -1 where that is not known
@@ -259,8 +259,9 @@ def _lines_on_grid(lines: dict[int, list[_PieceOfLine]]) -> _GridLines:
     first = np.minimum.reduceat(begin, begins)
     start = np.append(0, np.cumsum(np.maximum(np.maximum.reduceat(end, begins) - first, 0)))
     columns = _columns_on_grid(pieces, np.array(order)[line], names, s, begin, end, (start[:-1] - first)[line], int(start[-1]))
-    rows = [_GridRow(longest.kind, longest.pattern, at, {name: values[a:b] for name, values in columns.items()})
-            for longest, at, a, b in zip(map(_longest, by_line), first.tolist(), start[:-1].tolist(), start[1:].tolist())]
+    rows = [_GridRow(_longest([p for p in of_line if p.kind] or of_line).kind, _longest(of_line).pattern, at,
+                     {name: values[a:b] for name, values in columns.items()})
+            for of_line, at, a, b in zip(by_line, first.tolist(), start[:-1].tolist(), start[1:].tolist())]
     return _GridLines(s, rows, names)
 
 
@@ -333,7 +334,7 @@ def _chained(rows):
                 result.columns[name][gap] = np.interp(gap, [first, last], result.columns[name][[first, last]])
             # a gap of a dashed line is no gap
             result.columns["seen"][gap] = head.pattern.startswith("dash") or row.pattern.startswith("dash")
-    return _GridRow(head.kind, head.pattern, head.begin, result.columns)
+    return _GridRow(next((row.kind for row in rows if row.kind), ""), head.pattern, head.begin, result.columns)
 
 
 def _lead_over(lines: _GridLines, leads: list[tuple[int, int, int]]) -> None:

@@ -15,7 +15,7 @@ from ...curves.base import Curve
 from ...survey.frame.placement import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.road_frame import RoadFrame
 
-CONFIRMED = "accepted"   # status of a line that an analyst looked at
+CONFIRMED, DRAWN = "accepted", "drawn"   # statuses of a line that an analyst looked at, and of one that an analyst drew
 LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
 
 
@@ -67,8 +67,8 @@ class PaintedLines(LayerRows):
     @property
     def told(self) -> np.ndarray:
         """(P,) str objects, `kind` of what was drawn or confirmed by hand; "" of what was fitted, which an estimate named from the same lines."""
-        fitted = np.zeros(len(self), bool) if self.rmse is None else np.isfinite(self.rmse) & (self.status != CONFIRMED)
-        return np.where(fitted, "", self.kind)
+        fitted = np.empty(0) if self.rmse is None else self.line[np.isfinite(self.rmse)]   # bridged pieces of these have no rmse
+        return np.where(np.isin(self.line, fitted) & ~np.isin(self.status.astype(str), (CONFIRMED, DRAWN)), "", self.kind)
 
     def scatter(self) -> dict[int, float]:
         """RMS distance of the paint from the curve of every line where it is known, metres, by the line's number."""

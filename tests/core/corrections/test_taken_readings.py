@@ -137,3 +137,23 @@ def test_the_name_of_a_line_tells_directions_where_an_analyst_confirmed_it_and_n
     assert json.loads(unnamed["other"])["lanes"] and oncoming(lines) == unnamed
     sure = oncoming(replace(lines, status=np.array(["measured", "accepted", "measured"], object)))
     assert sure["other"] is None and sure["confidence"] > unnamed["confidence"]
+
+
+@pytest.mark.parametrize("confirmed", [(5.0, 30.0), (70.0, 95.0)])
+@pytest.mark.parametrize("gap", [0.0, 3.0])
+def test_the_name_that_an_analyst_gave_part_of_a_line_counts_at_whichever_end_that_lies(confirmed, gap):
+    """The parts are pieces of one line, or lines that go on as the next."""
+    street = Street(length=100.0, vehicle=-1.75).paint(3.5, kind="").paint(-3.5, kind="")
+    for first, last in ((5.0, 30.0), (30.0 + gap, 70.0 - gap), (70.0, 95.0)):
+        kind = "centre" if (first, last) == confirmed else ""
+        street.paint(0.0, first, last, kind=kind, pattern="dashed", line=None if gap else 3)
+    oncoming = max((row for row in street.lanes()[0].rows if row["direction"] < 0), key=lambda row: row["end_m"] - row["station_m"])
+    assert oncoming["other"] is None and oncoming["confidence"] > 0.9
+
+
+@pytest.mark.parametrize("status, told", [("bridged", ""), ("drawn", "centre"), ("accepted", "centre")])
+def test_a_piece_that_a_fitted_line_bridges_was_not_named_by_hand(status, told):
+    lines = named(Street(length=100.0).paint(3.5, kind="").paint(0.0, kind="").paint(-3.5, kind=""))
+    lines = replace(lines, kind=np.full(3, "centre", object), line=np.array([1, 2, 2]), rmse=np.array([0.01, 0.01, np.nan]),
+                    status=np.array(["measured", "measured", status], object))
+    assert lines.told.tolist() == ["", "", told]
