@@ -34,7 +34,7 @@ from ..intensity.correction import AsphaltLook, IntensitySettings, intensity_cor
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image, pieces_of_image
 from ..io.crs import check_projected
 from ..markings.cross_section.sections import EdgeSections
-from ..markings.lines.fit import LINES_SHARE, MarkingLineSettings, named_by_estimate, named_by_lines, traced_lines
+from ..markings.lines.fit import MarkingLineSettings, named_by_estimate, named_by_lines, traced_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import extract_markings
@@ -264,13 +264,9 @@ def _paint(result, image_path, settings, stages, executor, asphalt):
         estimates = estimate_lanes(lines, frame, settings.driving, progress, markings, beside, result.road_points, readings)
         return named_by_estimate(lines, estimates), estimates
 
-    def fitted(progress):
-        """Those of the lines as they are traced."""
-        lines = traced_lines(clustered, markings, frame, settings.lines, progress.part(0.0, LINES_SHARE), beside, result.road_points)
-        return named(lines, progress.part(LINES_SHARE, 1.0))
-
-    lines, estimates = stages.run("lines", "Fitting marking lines …", fitted, depends=(
-        result.corrections.asked("marking", ["delete"]), readings, settings.lines, settings.driving))
+    traced = stages.run("lines", "Fitting marking lines …", traced_lines, clustered, markings, frame, settings.lines, edges=beside,
+                        road_points=result.road_points, depends=(result.corrections.asked("marking", ["delete"]), settings.lines))
+    lines, estimates = stages.run("lanes", "Estimating lanes …", named, traced, depends=(readings, settings.driving))
     drawn = correct_marking_lines(lines, frame, result.corrections, edge_places)
 
     def corrected():
@@ -308,7 +304,7 @@ def _corrected(road_points, frame, settings, asphalt, progress):
 # source: `make bench`: relative run time of each stage (per million points, per kilometre of road)
 STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), asphalt=(0.02, 0.35),
                    corrected=(0.0, 0.0), intensity=(0.017, 0.35), image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26),
-                   clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
+                   clusters=(0.019, 1.1), lines=(0.0045, 0.39), lanes=(0.0025, 0.21), driving=(0.0025, 0.64))
 MIN_STAGE_COST = 0.01   # derived: of a stage without work
 LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42   # source: relative run time of reading a point of a LAZ and of a LAS file
 
@@ -347,7 +343,8 @@ class Extent:
         return MIN_STAGE_COST + of_points * self.points + of_length * self.length
 
 
-INTENSITY_STAGES = ("asphalt", "intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that need intensity
+INTENSITY_STAGES = ("asphalt", "intensity", "image", "markings", "outliers", "clusters", "lines", "lanes",
+                    "driving")   # stages that need intensity
 STAGE_NAMES = ("survey", "curbs", "edges", "surface", "corrected", *INTENSITY_STAGES)
 
 

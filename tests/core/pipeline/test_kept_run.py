@@ -120,6 +120,13 @@ def test_a_moved_line_takes_its_name_and_the_lanes_alone_and_is_never_that_of_an
     assert made(street, tmp_path, kept, moved[0])[0] == found[0]
 
 
+def test_another_lane_setting_leaves_the_lines_as_they_were_traced(street, alone, tmp_path, monkeypatch, kept):
+    settings = replace(SETTINGS, driving=replace(SETTINGS.driving, shortest=12.0))
+    assert made(street, tmp_path, kept)[0] == alone[0]
+    without(monkeypatch, (*SURFACE, "traced_lines"))
+    made(street, tmp_path, kept, settings=settings)
+
+
 def test_a_corrected_edge_changes_the_stretches_beside_it_alone(street, tmp_path, monkeypatch, kept):
     asked, run, settings = {}, Threads.run, replace(SETTINGS, survey=SurveySettings(section_length=1.0))
 
