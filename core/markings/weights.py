@@ -419,6 +419,7 @@ class PHOTOGRAPHS:
     median_cells: int = 3   # of the median that evens single cells out before the level is taken
     joint_cells: int = 5   # 20 cm, the diameter of the disc that joints and bands of tar have no room for
     level_cells: int = 23   # 0.92 m, the diameter of the disc that bright ground has room for and paint has not
+    line_cells: int = 9   # 36 cm, the diameter of the disc that no line has room for (at most 30.5 cm, countries.json), and stripes of 50 cm have
     half_maximum_cells: int = 7   # 28 cm in which the brightest cell is looked for
     # two pairs of quantiles of a normal distribution, each with its standard deviations below the median: the first stays asphalt where paint covers
     # two thirds of a square, the second where dark joints and rails cover a fourth

@@ -41,24 +41,25 @@ def clear_pieces(z: np.ndarray, mask: np.ndarray, seen: np.ndarray, are_paint: C
 
     z : (rows, columns) float32 spreads above asphalt, no more than the highest threshold of each cell counts
     mask, seen : (rows, columns) bool, bright cells and those whose brightness is known
-    are_paint : gives (pieces,) by (rows, columns) int their numbers from 1 on, 0 elsewhere, the share of their evidence that counts; None
-        where nothing else tells what is paint
+    are_paint : gives (rows, columns) the share of the evidence of each cell that counts, by (rows, columns) int the numbers of pieces from 1 on, 0
+        elsewhere; None where nothing else tells what is paint
     """
     joined = fill_gaps(mask, int(round(ASPHALT.close / CELL_SIZE)), 0)
     for axis, limit in enumerate((TRACKS.max_gap_on_track, TRACKS.max_track_gap)):
         joined |= _unseen_gaps(mask, seen, limit, axis)
     count, labels = cv2.connectedComponents(joined.view(np.uint8), connectivity=8)
-    sums = np.bincount(labels[mask], np.minimum(z[mask], ASPHALT.highest), count)
-    large = sums >= ASPHALT.evidence
+    of, evidence = labels[mask], np.minimum(z[mask], ASPHALT.highest)
+    large, counted = np.bincount(of, evidence, count) >= ASPHALT.evidence, True
     if are_paint is not None and large.any():
-        large[large] = sums[large] * are_paint((np.cumsum(large) * large)[labels]) >= ASPHALT.evidence
+        counted = np.broadcast_to(are_paint((np.cumsum(large) * large)[labels]), mask.shape)[mask]
+        large &= np.bincount(of, evidence * counted, count) >= ASPHALT.evidence
     clear = np.zeros(mask.shape, bool)
-    clear[mask] = large[labels[mask]]
+    clear[mask] = large[of] & (counted > 0)
     return mask & (clear | _between(clear, mask)) if clear.any() else clear
 
 
 def two_sided(above: np.ndarray, bright: np.ndarray, least: float, labels: np.ndarray) -> np.ndarray:
-    """(pieces,) share of their evidence that counts, from 0 of the rim of a repair to 1; as of `clear_pieces`.
+    """(rows, columns) share of the evidence of pieces that counts, from 0 of the rim of a repair to 1; as of `clear_pieces`.
 
     Such a rim is bright on one side, too, or fades out into the repair: it is brighter than its brighter side by less than `least` spreads, and that
     side is about half as bright as itself, above the asphalt.
@@ -67,7 +68,7 @@ def two_sided(above: np.ndarray, bright: np.ndarray, least: float, labels: np.nd
     """
     _, high, middle = beside_pieces(above, labels, bright, RIMS.beside)
     counted = np.interp(high / np.maximum(middle, 1e-6), RIMS.brighter_side, (1.0, 0.0))
-    return np.where(middle - high < least, counted, 1.0)
+    return np.append(0.0, np.where(middle - high < least, counted, 1.0))[labels]
 
 
 def beside_pieces(values: np.ndarray, labels: np.ndarray, bright: np.ndarray, reach: tuple[int, int]) -> np.ndarray:

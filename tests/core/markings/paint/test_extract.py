@@ -181,6 +181,18 @@ def test_a_row_of_stripes_in_the_shade_is_paint_in_photographs_where_a_fleck_of_
     assert len(np.unique([found.s[on_stripes] // 0.5, found.d[on_stripes] // 1.0], axis=1).T) >= 36
 
 
+def test_an_edge_line_in_the_shade_is_paint_in_photographs_where_a_band_of_sun_crosses_it_and_the_band_is_none(tmp_path):
+    """Together they are ragged and as bright as the sun; of the line on either side of the band neither is true."""
+    line = strip(0, 60, 2.0, 2.15)
+    s, d = strewn(60.0, 4.0, -4.0, DENSITY)
+    band = np.abs(s - 30 - 0.5 * d) < 0.4
+    lit = np.where((np.abs(s - 30) > 8) | band, 3.0, 1.0)
+    found = found_on(records_at(FRAME, s, d, np.where(line(s, d), 1.8, 1.0) * ASPHALT * grained(s, d, 0.05, 6) * lit / 3.0, 4.0), tmp_path)
+    on_line = strip(0, 60, 1.95, 2.2)(found.s, found.d)
+    assert on_line.mean() > 0.98
+    assert len(np.unique(found.s[on_line] // 0.5)) >= 116
+
+
 @pytest.mark.parametrize("way", [1, -1])
 def test_worn_stripes_are_paint_in_photographs_of_unequal_exposure_that_darken_to_one_side(tmp_path, way):
     exposure = np.array([0.0, 0.2, -0.15, 0.1, -0.2, 0.05, 0.2, -0.1, 0.0, 0.15, -0.2, 0.1, 0.0, 0.2, -0.1])
