@@ -4,7 +4,7 @@
 # time. Each part is spread over the processor's cores, one file of tests at a time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
 # A test that takes more than 10 minutes is ended, with the stacks of all threads. A process that dies, which QGIS does once in
-# many runs, ends its part, for pytest-xdist 3.8 would wait for the new process for ever; the part then runs once more.
+# some runs, ends its part, for pytest-xdist 3.8 would wait for the new process for ever; the part then runs once more, or twice.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 cd "$LANEWRIGHT_ROOT"
@@ -21,10 +21,10 @@ mkdir "$LANEWRIGHT_MADE_ONCE"
 # With -k a part may have nothing to run (pytest says 5); without arguments that is a failure.
 run() {
   local code=0 attempt
-  for attempt in 1 2; do
+  for attempt in 1 2 3; do
     code=0
     "$@" | tee "$scratch/said" || code=$?
-    [ "$attempt" -eq 1 ] && grep -q "crashed while running" "$scratch/said" || break
+    [ "$attempt" -lt 3 ] && grep -q "crashed while running" "$scratch/said" || break
     echo "== a process of the tests died (see above): this part once more"
   done
   [ "$code" -eq 5 ] && [ "$chosen" -gt 0 ] && return 0
