@@ -304,7 +304,7 @@ def _corrected(road_points, frame, settings, asphalt, progress):
 # source: `make bench`: relative run time of each stage (per million points, per kilometre of road)
 STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), asphalt=(0.02, 0.35),
                    corrected=(0.0, 0.0), intensity=(0.017, 0.35), image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26),
-                   clusters=(0.019, 1.1), lines=(0.0045, 0.39), lanes=(0.0025, 0.21), driving=(0.0025, 0.64))
+                   clusters=(0.019, 1.1), lines=(0.0045, 0.39), lanes=(0.0025, 0.21), driving=(0.0025, 0.4))
 MIN_STAGE_COST = 0.01   # derived: of a stage without work
 LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42   # source: relative run time of reading a point of a LAZ and of a LAS file
 
@@ -343,8 +343,7 @@ class Extent:
         return MIN_STAGE_COST + of_points * self.points + of_length * self.length
 
 
-INTENSITY_STAGES = ("asphalt", "intensity", "image", "markings", "outliers", "clusters", "lines", "lanes",
-                    "driving")   # stages that need intensity
+INTENSITY_STAGES = ("asphalt", "intensity", "image", "markings", "outliers", "clusters", "lines", "lanes", "driving")   # need it
 STAGE_NAMES = ("survey", "curbs", "edges", "surface", "corrected", *INTENSITY_STAGES)
 
 
