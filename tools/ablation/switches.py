@@ -276,7 +276,6 @@ ROWS = (
         ("long gaps", "linking:link_over_long_gaps", nth(0)),
         ("long gaps beside another line", "linking:_runs_beside", gives(False)),
         ("long gaps of a dash pattern", "selection:same_dash_pattern", gives(False)),
-        ("strays", "linking:without_strays", nth(0), "a piece of paint 0.15 m beside dashes"),
         ("between twins", "linking:_between_twins", gives(False), "", "linking:_between_twins linking:twin_offsets"),
         ("ragged edges and double lines", "selection:_beside",
          lambda lines, *_: (np.zeros(len(lines), bool), [(np.empty(0), np.empty(0, bool))] * len(lines))),
