@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import map_coordinates, uniform_filter1d
 
 from ...common.arrays import stretch_of
 from ...common.parallel import by_rows
@@ -40,6 +40,8 @@ class _GrownLimit:
     shown: np.ndarray   # (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
     likely: np.ndarray   # (R,) bool, whether it is rather an edge than not
     hidden: np.ndarray   # (R,) bool, whether hardly anything was measured right behind it
+    guess: np.ndarray   # (R,) m, one sigma of where the pavement ends as height alone shows: anywhere from there to the drive
+    inferred: np.ndarray   # (R,) bool, whether height alone shows it on most rows about it
 
 
 def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarray, prior: np.ndarray, sign: int | float, track: np.ndarray,
@@ -72,7 +74,7 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     changes = halves.changes(track_offset, max_width)
     measured = np.flatnonzero(changes >= 0)
     if not len(measured):
-        return _GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere)
+        return _GrownLimit(track + sign * max_width, np.full(len(track), np.inf), nowhere, nowhere, ~nowhere, 0.0 * track, nowhere)
     # at the last cell, nothing beyond it was looked for
     blind = np.pad(halves.blind(), ((0, 0), (0, 1)))[np.arange(len(changes)), changes]
     changes = np.interp(places, places[measured], _agreed(changes[measured], blind[measured], len(rows.offsets)))
@@ -83,8 +85,11 @@ def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, height: np.ndarra
     row = np.clip(np.searchsorted(rows.stations + 0.5 * SURFACE.profile_row, stations), 0, len(rows.stations) - 1)
     farthest = sign * track + max_width
     within = outward < farthest
+    # derived: root mean square of places that are evenly probable, from the outermost one
+    guess = np.maximum(outward - sign * track - SURFACE.certain_road, 0.0) / np.sqrt(3.0)
+    by_height = uniform_filter1d((~limits.look[row]).astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1) > 0.5
     return _GrownLimit(sign * np.minimum(outward, farthest), limits.gap[row] * SURFACE.profile_column / np.sqrt(12.0),
-                       limits.shown[row] & within, limits.likely[row] & within, limits.hidden[row])
+                       limits.shown[row] & within, limits.likely[row] & within, limits.hidden[row], guess, by_height)
 
 
 def _agreed(changes, blind, cells):
@@ -142,11 +147,11 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
             offset[inside][take] = line_offset[take]
             measured[inside][take] = status != "inferred"
         offset = _continued(stations, offset)
-        for s, d, _ in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
+        for s, d, status in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
             inside = stretch_of(stations, s[0], s[-1])
             take = np.isnan(offset[inside])
             offset[inside][take] = np.interp(stations[inside][take], s, d)
-            measured[inside][take] = True
+            measured[inside][take] = status != "inferred"
         result[side] = _closed(stations, offset), measured
     return result
 

@@ -29,6 +29,7 @@ class _PavementLimits:
     shown: np.ndarray   # (P,) bool, whether road before and other ground behind it were measured
     likely: np.ndarray   # (P,) bool, whether rather so than not
     hidden: np.ndarray   # (P,) bool, whether hardly anything was measured right behind it, or nothing that tells road from other ground
+    look: np.ndarray   # (P,) bool, whether rather so than not by roughness and brightness alone: a verge may be as high as the road
 
 
 def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimits:
@@ -51,18 +52,18 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
     about, total = (partial(over, reach=SURFACE.averaged_rows) for over in (median_about, sum_about))
     height, brightness, scatter, rough = *map(about, (height, brightness, scatter)), roughness_of_rows(rough, freedom, about, total)
     share = known_median((scatter / np.maximum(brightness, 1.0))[:, :SURFACE.road_cells], 1)[:, None]
-    off = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, coverage, cells[:, 0])
+    off, look = _unlike_road(height, np.log(np.maximum(rough, 1e-4)), np.log(np.maximum(brightness, 1.0)), share, coverage, cells[:, 0])
     own_rows = sum_about(measured & np.isfinite(off), SURFACE.own_rows)
     weight = np.minimum(measured_rows / SURFACE.min_known_rows, 1.0)
-    costs = weight * np.nan_to_num(np.clip(off, 0.0, SURFACE.max_sigmas) ** 2 - SURFACE.other_sigmas ** 2) / 2
+    costs, look = (weight * np.nan_to_num(np.clip(sigmas, 0.0, SURFACE.max_sigmas) ** 2 - SURFACE.other_sigmas ** 2) / 2 for sigmas in (off, look))
     # cell by cell outward, the cost of counting all cells before it as road
     total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, SURFACE.road_cells:-SURFACE.cells_outside], axis=1)], axis=1)
     limit = _along(total, change_cell)
     window = SURFACE.road_cells + np.arange(-SURFACE.cells_inside, SURFACE.cells_outside)
     window = np.clip(limit, 0, SURFACE.inner_cells + SURFACE.outer_cells)[:, None] + window
     ground = np.abs(height) < SURFACE.max_ground_height
-    costs, measured_rows, own_rows, ground = (np.take_along_axis(values, window, 1)
-                                              for values in (np.where(ground, costs, 0.0), measured_rows, own_rows, ground))
+    costs, look, measured_rows, own_rows, ground = (np.take_along_axis(values, window, 1) for values in (
+        np.where(ground, costs, 0.0), look, measured_rows, own_rows, ground))
     inside, outside = slice(SURFACE.cells_inside), slice(SURFACE.cells_inside, None)
     # far away only every third cell may hold a scan line
     usual = measured_rows[:, inside].mean(1) / (2 * SURFACE.averaged_rows + 1)
@@ -74,7 +75,8 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> _PavementLimit
     shown = likely & (costs_inside <= -SURFACE.shown_cost) & (costs_outside >= SURFACE.shown_cost * usual)
     cell, gap = _between_known(limit + SURFACE.road_cells, weight)
     cell = cell + _mixed(limit + SURFACE.road_cells, off, weight)
-    return _PavementLimits(cell - SURFACE.road_cells - SURFACE.inner_cells + change, gap, shown, likely, hidden)
+    return _PavementLimits(cell - SURFACE.road_cells - SURFACE.inner_cells + change, gap, shown, likely, hidden,
+                           look[:, outside].sum(1) > 0.0)
 
 
 def _between_known(limit, weight):
@@ -100,7 +102,7 @@ def _mixed(limit, off, weight):
 
 
 def _unlike_road(height, rough, brightness, scatter, seen, first):
-    """(P, K) sigmas by which cells differ from the road before them; NaN where nothing tells.
+    """(P, K) sigmas by which cells differ from the road before them, in all and but for their height; NaN where nothing tells.
 
     brightness and roughness are logarithms; `scatter` : (P, 1) of the brightness of single points; `seen` : (P, K) points;
     `first` : (P,) the first cell of each row
@@ -118,12 +120,12 @@ def _unlike_road(height, rough, brightness, scatter, seen, first):
     rough_sigma, above_road = np.hypot(SURFACE.near_rough_sigma, 1.0 / points), rough - known_median(rough[:, road], 1)[:, None]
     # behind a strip with few points, which looks smooth, the road is as rough as before it again
     rougher = np.minimum(_off_course(rough_course, rough_sigma, seen), np.maximum(above_road, 0.0) / rough_sigma)
-    off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / SURFACE.height_sigma, above_road / SURFACE.rough_sigma)
     # hardly any ground is darker than asphalt
-    off = np.fmax(off, np.where(bright < 0.0, np.fmin(-bright, SURFACE.other_sigmas), bright))
+    look = np.fmax(above_road / SURFACE.rough_sigma, np.where(bright < 0.0, np.fmin(-bright, SURFACE.other_sigmas), bright))
     # of two that are both off by chance the sum is off by one more
-    off = np.fmax(off, np.sqrt(np.fmax(np.fmax(rougher, 0.0) ** 2 + np.fmax(bright, 0.0) ** 2 - 1.0, 0.0)))
-    return np.where(doubtful & (off < SURFACE.other_sigmas), np.nan, off)
+    look = np.fmax(look, np.sqrt(np.fmax(np.fmax(rougher, 0.0) ** 2 + np.fmax(bright, 0.0) ** 2 - 1.0, 0.0)))
+    off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / SURFACE.height_sigma, look)
+    return np.where(doubtful & (off < SURFACE.other_sigmas), np.nan, off), look
 
 
 def _without_slope(values):

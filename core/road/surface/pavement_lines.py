@@ -1,6 +1,7 @@
 """Edges of the pavement as lines: where a road without a curb was seen to end, smoothed along the road.
 
-A line is drawn where road inside and other ground outside were measured; where something hides both, it is bridged as curbs are.
+A line is drawn where road inside and other ground outside were measured; where something hides both, it is bridged as curbs are. Where height alone
+tells them apart, as on a slope that may begin beyond a level verge, it is inferred.
 Where nothing tells the pavement from what lies beside it, there is no line.
 """
 
@@ -42,8 +43,11 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
         if carriageway is not None:
             pieces += _pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:
-        length = {status: sum(piece.length for piece in pieces if piece.status == status) for status in ("measured", "bridged")}
+        length = {status: sum(piece.length for piece in pieces if piece.status == status) for status in ("measured", "bridged", "inferred")}
         progress.info(f"Edges of the pavement without a curb: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+        if length["inferred"]:
+            progress.warn(f"Along {length['inferred']:.0f} m neither brightness nor roughness shows where a pavement without a curb ends. Its edges "
+                          "are inferred from the slope of the ground and may lie metres beyond it; intensity or denser points tell more.")
     return edges.and_pieces(pieces, survey.frame)
 
 
@@ -126,7 +130,7 @@ def _drawn(frame, road, side, carriageway, grown, runs):
     """The pieces of one line, which has no number yet."""
     stations = carriageway.cells.stations
     rows = np.concatenate([np.arange(a, b) for a, b in runs])
-    offset, sigma = grown.offset[rows], grown.sigma[rows]
+    offset, sigma, guess = grown.offset[rows], grown.sigma[rows], np.where(grown.inferred, grown.guess, 0.0)[rows]
     # a place depends on what lies within a few smoothing lengths, and on nothing farther along the line (Silverman 1984)
     curve = make_smoothing_spline(stations[rows], offset, w=sigma**-2.0,
                                   lam=SURFACE.smoothing_length**4 / (np.median(sigma)**2 * SURFACE.row_length))
@@ -136,20 +140,20 @@ def _drawn(frame, road, side, carriageway, grown, runs):
         if k:
             pieces.append(("bridged", stations[runs[k - 1][1] - 1], stations[a]))
         # a single row between two gaps is a place where bridges meet, without a length to draw
-        if b - a > 1:
-            pieces.append(("measured", stations[a], stations[b - 1]))
+        bounds = np.r_[a, a + 1 + np.flatnonzero(np.diff(grown.inferred[a:b])), b - 1]
+        pieces += [("inferred" if grown.inferred[i] else "measured", stations[i], stations[j]) for i, j in zip(bounds[:-1], bounds[1:]) if j > i]
     result = []
     for status, start, end in pieces:
         s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE.edge_vertex_spacing)), 1) + 1)
-        d = curve(s) if status == "measured" else np.interp(s, [start, end], curve([start, end]))
+        d = curve(s) if status != "bridged" else np.interp(s, [start, end], curve([start, end]))
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = stretch_of(stations[rows], start, end)
         passes = frame.passes_sigma(road, s)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
         # the line is off as far as rows scatter about it, and by a share of what one row is; a bridge may bend as one of a curb: in the mean along it
         # by two thirds of what it bends in its middle
-        bend = 0.0 if status == "measured" else EDGE.bridge_bend * (end - start) ** 3 / 1.5
-        variance = float(SURFACE.row_share**2 * np.mean(sigma[near] ** 2) + rmse**2 + bend**2 + np.mean(passes**2))
+        bend = 0.0 if status != "bridged" else EDGE.bridge_bend * (end - start) ** 3 / 1.5
+        variance = float(SURFACE.row_share**2 * np.mean(sigma[near] ** 2) + rmse**2 + bend**2 + np.mean(passes**2) + np.mean(guess[near] ** 2))
         result.append(EdgePiece(vertices, road, side, status, -1, float(start), float(end), rmse=rmse, what="pavement", sigma=variance**0.5))
     return result
 

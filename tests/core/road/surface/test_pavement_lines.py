@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.common.features import ROAD_EDGES, Features
+from lanewright.core.common.progress import RememberedMessages
 from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.road.edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from lanewright.core.road.surface import pavement_lines
@@ -322,6 +323,20 @@ def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured(pla
     d = points.all_points().d
     assert (np.percentile(d, 0.1), np.percentile(d, 99.9)) == pytest.approx((-HALF, HALF), abs=0.08)
     assert surface.area[surface.status == "measured"].sum() > 0.8 * surface.area.sum()
+
+
+def test_where_the_slope_of_the_ground_alone_ends_the_road_its_edge_is_inferred_and_as_uncertain_as_a_level_verge_is_wide():
+    rng, level = np.random.default_rng(8), 5.5
+    x, aside = rng.uniform(-4, LENGTH + 4, 20_000), rng.uniform(level, REACH, 20_000)
+    slope = x, aside * rng.choice([-1, 1], len(x)), rng.normal(0.3 * (level - aside), 0.003), 1000.0 * rng.lognormal(0.0, 0.1, len(x))
+    survey, progress = street(verge=False, keep=lambda s, d: np.abs(d) < level, extra=slope), RememberedMessages()
+    edges = with_pavement_edges(survey, no_edges(survey), progress=progress)
+    assert set(edges.status) == {"inferred"}
+    assert min(covered(edges, survey, side, half=lambda s: np.full_like(s, level)) for side in (1, -1)) >= 0.9
+    assert ((edges.sigma > level - HALF) & (edges.sigma < level)).all()
+    (kind, message), = [one for one in progress.messages if one[0] == "warn"]
+    assert "inferred" in message and f"{edges.length.sum():.0f} m" in message
+    assert set(extract_road_surface(survey, edges)[1].status) == {"grown"}
 
 
 def test_written_and_read_again_an_edge_of_the_pavement_is_one(plain):
