@@ -143,7 +143,7 @@ def test_the_table_names_who_feels_a_rule_and_who_does_not(short, tmp_path):
 
 
 def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_enough():
-    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind")
+    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind", "hidden")
     values = {name: np.zeros(5) for name in names}
     values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
                   height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))

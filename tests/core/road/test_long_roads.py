@@ -122,7 +122,7 @@ def chains_along(pieces):
     s = np.concatenate(s)
     zero, one = np.zeros(len(s)), np.ones(len(s))
     steps = CurbSteps(profile=np.rint(s / 0.25).astype(int), s=s, u=u, h=zero, skew=zero, height=0.1 * one, run=zero, noise=0.003 * one,
-                      scanner_noise=0.003 * one, support=50 * one.astype(int), behind=20 * one.astype(int))
+                      scanner_noise=0.003 * one, support=50 * one.astype(int), behind=20 * one.astype(int), hidden=zero)
     chains = [StepChain(np.arange(a, b), float(s[a]), float(s[b - 1])) for a, b in zip(ends[:-1], ends[1:])]
     return steps, chains, [(k, chains[k].start, chains[k].end) for k in range(2 * pieces)]
 
