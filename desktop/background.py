@@ -28,9 +28,11 @@ from ..processing_provider.call import FeedbackProgress
 from ..processing_provider.texts import told, tr
 from .widgets import say
 
+_UNDER_WAY: set[BackgroundRun] = set()   # QGIS keeps no reference, and goes on reading and writing context and feedback until a run has ended
+
 
 class BackgroundRun:
-    """One run, begun when it is made; keep it until it ends, for QGIS keeps no reference.
+    """One run, begun when it is made, and kept until it ends, whoever forgets it.
 
     name : of one of our algorithms
     parameters : of the run
@@ -45,9 +47,11 @@ class BackgroundRun:
         self.context.setFeedback(self.feedback)
         self.task = QgsProcessingAlgRunnerTask(self.algorithm, parameters, self.context, self.feedback)
         self.task.executed.connect(lambda fine, results: self._ended(fine, results, ended))
+        _UNDER_WAY.add(self)
         QgsApplication.taskManager().addTask(self.task)
 
     def _ended(self, fine, results, ended):
+        _UNDER_WAY.discard(self)
         self.results = results
         ended(self, fine)
 

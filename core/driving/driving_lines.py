@@ -17,7 +17,7 @@ from ..execution.phase import THREADS
 from ..markings.cross_section.evidence import point_spacing
 from ..markings.cross_section.roads import EstimatedRoad, RoadEstimates, estimate_roads, usual_side
 from ..markings.cross_section.sections import STATION_STEP, CrossSections, EdgeSections
-from ..markings.cross_section.weights import HATCHING, OUTSIDE, TakenReading, share_within
+from ..markings.cross_section.weights import HATCHING, OUTSIDE, EstimateWeights, TakenReading, share_within
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
@@ -195,8 +195,8 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
 # scatter of its paint about its curve, most of which averages out along the curve. How much these are was found on simulated streets with truth
 # (docs/accuracy.md). More is added with the distance to its next paint, where it is bridged. The border of a hatched area is known as well as the
 # outline of its bars. Between two borders the middle takes half of the error of each; where two lanes lie between them with nothing painted in the
-# middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone it takes all of it, and what the width of
-# lanes is off by.
+# middle of the road, it takes three quarters of one and one quarter of the other. Beside one border alone it takes all of it, and half of what is
+# left over beside the lane: nothing but its scatter, or a gutter, which is as probable as a second reading that is not worth a word may be.
 #
 # The line is off by most of what the places of its lane lie beside it on average over some metres: the borders show the lane there and the line
 # passes it. Where the curvature changes, as from a straight into a hairpin bend, places and line are as good as an arc over some metres, which lies
@@ -241,11 +241,18 @@ def _mean_square_of_borders(track, known, paint, spacing):
     share = np.where((track.offset | beside_curb) & bounding.any(axis=0), bounding / np.maximum(bounding.sum(axis=0), 1), share)
     measured = track.status == MEASURED
     unbounded = np.where(bounding.any(axis=0), 0.0, SIGMA.gap_share * _distance_to(measured))
-    by_width = np.where(~measured & (track.offset | beside_curb), SIGMA.width_sigma, 0.0)
+    by_width = np.where(~measured & (track.offset | beside_curb), _left_over_beside(), 0.0)
     square = (share**2 * error).sum(axis=0)
     if bounding.any():   # beyond all borders it is no surer than at the last place that has one
         square = np.maximum(square, square[distance_transform_edt(~bounding.any(axis=0), return_distances=False, return_indices=True)[0]])
     return square + unbounded**2 + by_width**2
+
+
+def _left_over_beside():
+    """m, one sigma of the middle of a lane beside one border alone."""
+    (_, scatter, _), (gutter, of_gutter, _), *_ = EstimateWeights.left_over_beside
+    doubt = 1.0 / (1.0 + np.exp(EstimateWeights.doubt))
+    return 0.5 * np.sqrt((1.0 - doubt) * scatter**2 + doubt * (gutter**2 + of_gutter**2))
 
 
 def _mean_square_misfit(track, course, road, lines):

@@ -40,8 +40,6 @@ class SIGMA:
     usual_spacing: float = 0.03   # m, where there are no points to say it
     gap_share: float = 0.003   # m per m to the next place where a border is painted, or, without borders, where the lane is measured
     hatching_sigma: float = 0.03   # m, of a hatched area's border: outlines are of image cells, and its line's breadth is not known
-    # m, of the middle of a lane beside one border alone: half of what its width is off by; fitted on two simulated surveys, checked on others
-    width_sigma: float = 0.016
     between_borders: float = 0.5   # of the error of a border, that the middle of a lane is off by
     own_border: float = 0.75   # the same of the one border that is painted where two lanes lie between both
     far_border: float = 0.25   # and of the other one

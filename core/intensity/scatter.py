@@ -198,6 +198,7 @@ def _nats_of_photographs(road, scanner, count, _, differences, of_pass, along, a
 
 def _means(keys, values):
     """Of each value the mean of those with the same keys, and how many these are, (N,) each."""
-    group = np.unique(np.stack(keys), axis=1, return_inverse=True)[1].ravel()
+    order, group = np.lexsort(keys), np.zeros(len(values), np.intp)
+    group[order[1:]] = np.cumsum((np.diff(np.stack(keys)[:, order]) != 0).any(axis=0))
     count = np.bincount(group)
     return (np.bincount(group, values) / count)[group], count[group]

@@ -17,6 +17,7 @@ from qgis.core import (
     QgsDataSourceUri,
     QgsProcessing,
     QgsProcessingAlgorithm,
+    QgsProcessingAlgRunnerTask,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingOutputHtml,
@@ -68,12 +69,16 @@ class _OnePlaceForAll:
         self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
 
 
+_RUNNING: set[LanewrightDialog] = set()   # a run goes on when its dialog is closed; context and feedback, which it works with, are the dialog's
+
+
 class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
+        self.algorithmFinished.connect(lambda *result: _RUNNING.discard(self))
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
             self.save_button = self._button(tr("Save everything to…"), tr("One place for all results: a folder with the layers as tables of one "
                                                                           "GeoPackage, images and reports beside it; or a database"))
@@ -96,6 +101,11 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
+
+    def setCurrentTask(self, task: QgsProcessingAlgRunnerTask) -> None:
+        """Begin the run, and stay in memory until it ends."""
+        _RUNNING.add(self)
+        super().setCurrentTask(task)
 
     def _fold_outputs(self, names):
         """Many results go into a group that is closed at first: what is to be chosen stands above it."""

@@ -66,7 +66,7 @@ def test_results_are_compared_by_value():
 
 
 def test_the_weight_of_a_rule_is_what_nothing_else_uses():
-    whole, alone = SWITCHES["pieces in line"], SWITCHES["wander of sloped chains"]
+    whole, alone = SWITCHES["pieces in line"], SWITCHES["steps followed by few points"]
     assert weight(whole)[0] > 50 > weight(alone)[0] > 5
     # lines across gaps serve road edges too
     assert not any(name == "GapLine" for _, name in rule_parts(whole.rule))
@@ -143,7 +143,7 @@ def test_the_table_names_who_feels_a_rule_and_who_does_not(short, tmp_path):
 
 
 def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_enough():
-    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind")
+    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind", "hidden")
     values = {name: np.zeros(5) for name in names}
     values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
                   height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))

@@ -43,6 +43,9 @@ class EstimateWeights:
     bare: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     bare_too: float = 0.7   # of the other border of a strip between lanes, one border of which has no line: half of them have none either
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)   # that are the border of a hatched area
+    # of a border between the directions, against one between lanes, where the road falls to both sides of it, as at one in three of the former and
+    # one in ten of the latter, and where it falls across it to one side
+    crowned: tuple[float, float] = (float(np.log(0.1 / 0.35)), float(np.log(0.9 / 0.65)))
     named: float = 3.0   # of a line that separates something else than who drew or confirmed it says
     stroke: float = 3.0   # m of paint that strokes of symbols have too
     long_line: float = 25.0   # m of paint that make a line sure
@@ -87,6 +90,7 @@ class EstimateWeights:
     wrong_side: float = 8.0   # of oncoming traffic on the near side
     # of a solid line between lanes before their stop line, whichever way they lead, where it is not to be crossed
     solid_at_stop: float = _costs(0.6)[0]
+    stop_behind: float = 3.0   # of a lane that leads away from a stop line across it
     rest_at_stop: float = 4.0   # of a stop line as broad as a lane where no lane is
     # of two lanes beside each other that lead the same way, of which the outer one alone has a stop line: so for one in twenty
     outer_stopped: float = 3.0

@@ -241,13 +241,15 @@ def stripes_of_crossing(places: np.ndarray, way: np.ndarray, comb: Comb) -> list
     stripe_numbers, width, ends = row.numbers, row.width, row.ends
     if (lengths := np.median(ends[:, 1] - ends[:, 0])) > STRIPES.stripe_length[1] or lengths < STRIPES.min_stripe_span:
         return []
-    # the ends of all stripes lie on a line
+    # the ends of all stripes lie on a line, up to which each is drawn
     lines = [_line_of_ends(np.array(stripe_numbers), end, outward) for end, outward in zip(ends.T, (-1, 1))]
     turn = np.abs((best.heading - way[rows] + np.pi / 2) % np.pi - np.pi / 2)
     skew = STRIPES.max_row_skew_along if np.median(turn) <= STRIPES.along_road else STRIPES.max_row_skew
     if np.mean([abs(slope) for _, slope in lines]) > np.tan(skew) * best.pitch:
         return []
     ends = np.stack([line for line, _ in lines], axis=1)
+    if np.median(ends[:, 1] - ends[:, 0]) > STRIPES.stripe_length[1]:
+        return []
     c, n = np.cos(best.heading), np.sin(best.heading)
     stripes = []
     for k, (first, last) in zip(stripe_numbers, ends):

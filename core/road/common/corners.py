@@ -36,6 +36,7 @@ class CurbSteps(Rows):
     scanner_noise: np.ndarray   # (M,) m, the scanner's own noise there
     support: np.ndarray   # (M,) points of road side and face; those that several profiles use count by their share
     behind: np.ndarray   # (M,) points of the raised ground
+    hidden: np.ndarray   # (M,) m, one sigma of the foot of a face that no point shows; 0 where one does
 
     @property
     def upright(self) -> np.ndarray:
@@ -240,8 +241,10 @@ class StepPatches:
                 & (height >= CURBS.min_step_sigmas * noise) & (np.abs(slope) <= CURBS.max_road_slope) & stays
                 & ((n_face >= 1) | self._hidden_face(low, np.minimum(n_road, n_behind)))
                 & (run <= CURBS.max_face_width))
+        # derived: a foot that is evenly probable beneath the widest face, from the edge of its top on
+        hidden = np.where(n_face < 1, CURBS.max_face_width / np.sqrt(3.0), 0.0)
         return dict(s=station, u=corner + self.skew * station, h=level + slope * corner + grade * station, skew=skew, height=height, run=run,
-                    noise=noise, support=n_road + n_face, behind=n_behind, good=good)
+                    noise=noise, support=n_road + n_face, behind=n_behind, hidden=hidden, good=good)
 
     def _hidden_face(self, low, beside):
         """(M,) bool, may a face look away from the scanner there, as less of the ground before the rising cell was seen than by chance?

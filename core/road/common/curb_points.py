@@ -20,7 +20,7 @@ class CurbPoints(LayerRows):
     """N corners of curbs, and places at which something hides the curb.
 
     kind : (N,) str objects: main for the road's own curbs; corner, side_street and island for others
-    sigma : (N,) metres, one sigma across that the points of a line fitted as a whole share; NaN where each was seen by itself
+    sigma : (N,) metres, one sigma across that neighbouring points share, of a line fitted as a whole or a foot that no point shows; else NaN
     """
 
     GEOMETRY_TYPE, SCHEMA = "PointZ", CURB_POINTS

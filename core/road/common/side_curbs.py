@@ -194,10 +194,10 @@ def _points_of_line(steps, bounds, number):
     names = {"s", "u", "height", *(name for _, *coordinates in steps.PARTS for name in coordinates)}
     mean = {name: np.bincount(member, getattr(steps, name)) / n for name in names}
     residual = np.sqrt(np.bincount(member, (steps.u - np.interp(steps.s, mean["s"], mean["u"])) ** 2) / n)
-    support = np.bincount(member, steps.support)
+    support, hidden = np.bincount(member, steps.support), np.sqrt(np.bincount(member, steps.hidden**2) / n)
     return [dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]),
                  fields=dict(status="measured", height=round(float(mean["height"][k]), 4), chain=number, part=part,
-                             residual=round(float(residual[k]), 4), support=int(support[k])))
+                             residual=round(float(residual[k]), 4), support=int(support[k]), sigma=round(float(hidden[k]), 4) or np.nan))
             for k in range(len(blocks)) for part, u, h in steps.PARTS]
 
 

@@ -79,11 +79,11 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
 def point_table(points: CurbPoints, frame: RoadFrame) -> np.ndarray:
     """(N,) structured array of curb points in map coordinates, sorted by road, side and station; an unknown height is 0."""
     table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("status", "U8"), ("s", float), ("d", float), ("x", float),
-                                         ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int)])
+                                         ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int), ("sigma", float)])
     places = points.map_places(frame)
     for name, values in dict(road=points.road, side=points.side, status=points.status, s=points.station, d=points.offset,
                              x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain,
-                             support=points.support).items():
+                             support=points.support, sigma=np.nan_to_num(points.sigma)).items():
         table[name] = values
     return table[np.lexsort((table["d"], table["s"], table["side"], table["road"]))]
 
@@ -221,7 +221,7 @@ def _edges_of_side(source: NoSource, item: tuple[int, str, np.ndarray], frame: R
         for i, along, known in stretches_of(points, t, residual, np.diff(bridged) | np.diff(lowered)):
             passes = frame.passes_sigma(road, np.interp(along, t, points["s"]))
             sigma = edge_sigma(along, t[measured], residual[measured], points["support"][measured],
-                               foot=EDGE.faint_foot * lowered[i], passes=passes)
+                               foot=EDGE.faint_foot * lowered[i], passes=passes, shared=np.interp(along, t[measured], points["sigma"][measured]))
             # a bridge is one guess
             pieces.append(EdgePiece(curve.at(along), road, side, "bridged" if bridged[i] else "measured", number, **known,
                                     what="dropped" if lowered[i] else "curb", sigma=float(sigma.mean()) if bridged[i] else sigma))

@@ -140,7 +140,8 @@ def _steps_of(lines, best, min_height, max_height):
     return CurbSteps(profile=lines.first + rows, s=(lines.first + rows + 0.5) * lines.width,
                  u=lines.offset(cells) + pick["shift"], h=pick["bottom"], skew=pick["skew"], height=pick["height"],
                  run=np.zeros(len(rows)), noise=pick["scatter"], scanner_noise=lines.spread[rows],
-                 support=total[rows, cells] - total[rows, first], behind=total[rows, last] - total[rows, cells])
+                 support=total[rows, cells] - total[rows, first], behind=total[rows, last] - total[rows, cells],
+                 hidden=np.zeros(len(rows)))
 
 
 def _averaged(lines, skew):

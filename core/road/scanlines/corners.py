@@ -213,7 +213,7 @@ def _corners_with_face(near, which, least_slope):
     row, noise = side.first + candidates.row, ground.sigma.astype(float)
     corners = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
                           skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
-                          noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers,
+                          noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers, hidden=np.zeros(len(row)),
                           top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual, sloped=np.zeros(len(row), bool))
     return corners[good]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -133,16 +134,17 @@ class Strips:
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
         flat_index = (row * shape[1] + cell)[inside].astype(np.int64)
 
-        def means(values, cells):
-            # over neighbouring cells, where points are farther apart than cells
-            total, count = (_box_sum(np.bincount(flat_index, weights, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
-                            for weights in (values[inside], None))
+        count, rises, light = (np.bincount(flat_index, weights, shape[0] * shape[1]).reshape(shape).astype(np.float32)
+                               for weights in (None, h[inside], intensity[inside]))
+
+        def means(total, count):
             with np.errstate(invalid="ignore", divide="ignore"):
                 return np.where(count > 0.5, total / count, np.float32(np.nan))
 
-        heights = means(h, REGISTER.height_blur_cells)
+        # over neighbouring cells, where points are farther apart than cells
+        heights = means(*(_box_sum(part, REGISTER.height_blur_cells) for part in (rises, count)))
         steps = np.clip(_detrended(heights), -REGISTER.max_step, REGISTER.max_step)
-        paint = _detrended(np.where(_at_faces(heights), np.float32(np.nan), means(intensity, 1)))
+        paint = _detrended(np.where(_at_faces(heights), np.float32(np.nan), means(light, count)))
         finite = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[finite]))) / 0.6745 if finite.any() else 0.0
         return cls(heights, steps, np.clip(paint / max(spread, 1e-6), -REGISTER.max_contrast, REGISTER.max_contrast))
@@ -188,7 +190,9 @@ def _detrended(values):
 
 def _box_sum(values, cells):
     """Moving sums over an odd number of cells of each row, float32."""
-    total = np.cumsum(np.pad(values, ((0, 0), (cells // 2 + 1, cells // 2))), axis=1, dtype=float)
+    total = np.zeros((len(values), values.shape[1] + cells))
+    total[:, cells // 2 + 1:total.shape[1] - cells // 2] = values
+    np.cumsum(total, axis=1, out=total)
     return (total[:, cells:] - total[:, :-cells]).astype(np.float32)
 
 
@@ -374,14 +378,14 @@ def _window_evidence(survey, road, number, moves, lags=LAGS):
 
     rows = {pass_number: of_pass for pass_number in np.unique(owner).tolist()
             if len(of_pass := np.flatnonzero(owner == pass_number)) > REGISTER.min_shared_cells}
-    still, evidence = {pass_number: strips(of_pass) for pass_number, of_pass in rows.items()}, {}
+    still, evidence = cache(lambda pass_number: strips(rows[pass_number])), {}
     for pass_number, next_number in zip(list(rows)[:-1], list(rows)[1:]):
         move = moves.get((pass_number, next_number), {}).get(number)
-        across, lengthwise = strips(rows[next_number], *move) if move is not None else still[next_number]
-        up = height_offset(still[pass_number][0], across, 0)
-        evidence[pass_number, next_number] = (correlation_sums(still[pass_number][0], across, lags),
-                                              correlation_sums(still[pass_number][1], lengthwise, lags),
-                                              up, _rebuilt_width(still[pass_number][0], across, up))
+        across, lengthwise = strips(rows[next_number], *move) if move is not None else still(next_number)
+        up = height_offset(still(pass_number)[0], across, 0)
+        evidence[pass_number, next_number] = (correlation_sums(still(pass_number)[0], across, lags),
+                                              correlation_sums(still(pass_number)[1], lengthwise, lags),
+                                              up, _rebuilt_width(still(pass_number)[0], across, up))
     return evidence
 
 

@@ -41,9 +41,9 @@ def test_a_bridge_is_worse_than_what_it_joins():
     assert measured and bridged and min(bridged) > max(measured)
 
 
-def test_beside_one_line_alone_it_is_worse_by_what_the_width_of_a_lane_may_be():
+def test_beside_one_line_alone_it_is_worse_by_what_may_be_left_over_beside_the_lane():
     lines, _ = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, kind="centre").lanes()
-    assert max(sigmas(lines, source="pair")) < 0.005 and 0.015 < min(sigmas(lines, source="offset")) < 0.03
+    assert max(sigmas(lines, source="pair")) < 0.005 and 0.05 < min(sigmas(lines, source="offset")) < 0.07
 
 
 def test_what_passes_differ_by_is_in_it():

@@ -80,7 +80,7 @@ def seen(*stretches):
     ones = np.ones(len(u))
     steps = CurbSteps(profile=np.rint(np.concatenate(s) / 0.25).astype(int), s=np.concatenate(s), u=u, h=FOOT * ones, skew=0 * ones,
                       height=0.12 * ones, run=0 * ones, noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones.astype(int),
-                      behind=20 * ones.astype(int))
+                      behind=20 * ones.astype(int), hidden=0 * ones)
     chains = [StepChain(np.arange(a, b), stretch[0], stretch[1], scatter=stretch[3]) for a, b, stretch in zip(ends[:-1], ends[1:], stretches)]
     return SideSteps(steps, 0.25, CurbSettings().limits, np.arange(0.0, 62.0, 2.0), None), chains
 

@@ -145,5 +145,14 @@ def test_the_pitch_of_a_broad_crossing_is_that_of_all_its_stripes(pitch):
     np.testing.assert_allclose(found, middles - 6.0, atol=0.04)
 
 
+def test_strips_that_would_be_drawn_longer_than_any_crossing_are_none():
+    """Each is 9 m long, as lines between lanes that few tracks met, but they begin up to 3 m apart and would all be drawn to the same ends."""
+    rng = np.random.default_rng(6)
+    u, v = (rng.uniform(-reach, reach, 30_000)[:12_000] for reach in (12.0, 3.5))
+    begin = np.array([-5.5, -2.6, -5.6, -3.5, -3.1, -5.2, -5.0])[np.floor(v + 3.5).astype(int)]
+    strips = ((v + 3.5) % 1.0 < 0.5) & (u > begin) & (u < begin + 9.0)
+    assert not crossings_in(np.stack([u, v], axis=1)[strips])
+
+
 def test_two_stripes_are_no_crossing():
     assert not crossings_in(spots(STRIPES[:2], tracks=0.05)[0])

@@ -18,7 +18,7 @@ def curbs(*chains, height=0.04, limits=AUTOMATIC, width=0.25):
     # every other step lies out by twice the distance of each from the chord of its neighbours
     u = 3.5 + aside + 0.5 * scatter * (-1.0) ** np.rint(s / width)
     steps = CurbSteps(profile=np.rint(s / width).astype(int), s=s, u=u, h=0 * s, skew=0 * s, height=height * ones, run=0 * s,
-                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones)
+                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones, hidden=0 * s)
     return [(chain.start, chain.end) for chain in curb_chains(steps, label, width, limits)]
 
 

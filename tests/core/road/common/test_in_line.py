@@ -16,7 +16,7 @@ def street_with_a_piece(aside=0.0, above=0.0, height=0.04, piece=(30.0, 31.5)):
     count = len(s)
     steps = CurbSteps(profile=np.rint(s / 0.25).astype(int), s=s, u=3.5 + aside * between, h=-0.07 + above * between, skew=np.zeros(count),
                       height=np.where(between, height, 0.04), run=np.zeros(count), noise=np.full(count, 0.003),
-                      scanner_noise=np.full(count, 0.003), support=np.full(count, 50), behind=np.full(count, 20))
+                      scanner_noise=np.full(count, 0.003), support=np.full(count, 50), behind=np.full(count, 20), hidden=np.zeros(count))
     chains = [StepChain(np.flatnonzero((s >= a) & (s < b)), a, s[s < b].max()) for a, b in stretches]
     return steps, chains
 

@@ -12,7 +12,7 @@ def selected(*stretches):
     s, u = np.concatenate(parts), np.concatenate([np.full(len(part), u) for part, (_, _, u) in zip(parts, stretches)])
     ones = np.ones(len(s))
     steps = CurbSteps(profile=np.rint(s / 0.25).astype(int), s=s, u=u, h=0 * s, skew=0 * s, height=0.12 * ones, run=0 * s,
-                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones)
+                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones, hidden=0 * s)
     ends = np.cumsum([0] + [len(part) for part in parts])
     chains = [StepChain(np.arange(a, b), *stretch[:2]) for a, b, stretch in zip(ends[:-1], ends[1:], stretches)]
     return [part[0] for part in select_along_road(chains, steps, lambda station: 0.0)]

@@ -15,7 +15,7 @@ def kept(*stretches, aside=0.0, heights=None):
     for (a, b), of_stretch in zip(stretches, heights or []):
         height[(s >= a) & (s <= b + 0.01)] = of_stretch
     steps = CurbSteps(profile=np.rint(s / 0.25).astype(int), s=s, u=3.5 + aside * last, h=0 * s, skew=0 * s, height=height, run=0 * s,
-                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones)
+                      noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones, hidden=0 * s)
     chains = [StepChain(np.flatnonzero((s >= a) & (s <= b + 0.01)), a, b) for a, b in stretches]
     return [part[0] for part in drop_short_curbs([(k, a, b) for k, (a, b) in enumerate(stretches)], chains, steps)]
 

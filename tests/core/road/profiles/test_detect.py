@@ -8,7 +8,9 @@ import pytest
 from curbed_streets import driven, measured, parked_car, ringed_street, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.road.common.curb_limits import CurbSettings
+from lanewright.core.road.common.curb_points import CurbPoints
 from lanewright.core.road.common.side_curbs import block_bounds
+from lanewright.core.road.edges.fit import fit_road_edges
 from lanewright.core.road.profiles import detect
 from lanewright.core.road.weights import CURBS
 from road_layers import detect_curbs
@@ -63,9 +65,15 @@ def test_without_times_a_curb_whose_face_looks_away_from_a_scanner_on_the_sidewa
     survey = survey_of(tuple(column[~hidden] for column in cloud))
     assert not len(measured(detect_curbs(survey), "left"))   # from the road every face is seen
     survey.has_time = False
-    points = measured(detect_curbs(survey), "left")
+    curbs = detect_curbs(survey)
+    points = measured(curbs, "left")
     assert points[:, 3].min() < 1.5 and points[:, 3].max() > streets.LENGTH - 1.5
     np.testing.assert_allclose(points[:, 1], 3.5, atol=0.04)
+    # its foot is a guess, that of a curb which is seen is none
+    left, right = ([row["sigma_m"] or 0.0 for _, row in curbs if (row["side"], row["status"]) == (side, "measured")] for side in ("left", "right"))
+    assert np.mean(np.array(left) > 0.04) > 0.9 and np.mean(np.array(right) > 0.04) < 0.1
+    edges = fit_road_edges(CurbPoints.from_features(curbs, survey.frame), survey.frame)
+    assert edges.sigma[edges.side == "left"].min() > 0.04 > 0.01 > edges.sigma[edges.side == "right"].max()
 
 
 def test_a_curb_lower_than_five_centimetres_is_found_where_it_continues():
