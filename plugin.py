@@ -34,6 +34,9 @@ class LanewrightPlugin:
 
     def unload(self):
         if self.menu is not None:
+            from .desktop.background import end_runs
+
+            end_runs()
             self.menu.remove()
             self.menu = None
         if self.provider is not None:

@@ -19,6 +19,8 @@ from qgis.core import (
     QgsProject,
     QgsTask,
 )
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
 
 from ..algorithms.destinations import table_of
 from ..core.common.errors import Cancelled, RoadExtractionError
@@ -28,7 +30,20 @@ from ..processing_provider.call import FeedbackProgress
 from ..processing_provider.texts import told, tr
 from .widgets import say
 
-_UNDER_WAY: set[BackgroundRun] = set()   # QGIS keeps no reference, and goes on reading and writing context and feedback until a run has ended
+# whoever holds context and feedback of a run -> its task: QGIS keeps no reference, and goes on reading and writing them until the run has ended
+UNDER_WAY: dict[object, QgsTask] = {}
+LONGEST_END = 10_000   # ms that a cancelled run is waited for; it ends within two seconds
+
+
+def end_runs() -> None:
+    """Cancel every run and wait for it, before the plugin goes and with it the provider: a run asks for it until its end."""
+    for task in [*UNDER_WAY.values()]:
+        if not sip.isdeleted(task):
+            task.cancel()
+    clock = QElapsedTimer()
+    clock.start()
+    while not all(map(sip.isdeleted, UNDER_WAY.values())) and clock.elapsed() < LONGEST_END:
+        QCoreApplication.processEvents()
 
 
 class BackgroundRun:
@@ -47,11 +62,11 @@ class BackgroundRun:
         self.context.setFeedback(self.feedback)
         self.task = QgsProcessingAlgRunnerTask(self.algorithm, parameters, self.context, self.feedback)
         self.task.executed.connect(lambda fine, results: self._ended(fine, results, ended))
-        _UNDER_WAY.add(self)
+        UNDER_WAY[self] = self.task
         QgsApplication.taskManager().addTask(self.task)
 
     def _ended(self, fine, results, ended):
-        _UNDER_WAY.discard(self)
+        UNDER_WAY.pop(self, None)
         self.results = results
         ended(self, fine)
 

@@ -203,14 +203,9 @@ def _parts(boundaries, estimate, lane_width, line_distance):
     some, every, dashed = UNPAINTED[made_of].any(axis=0), UNPAINTED[made_of].all(axis=0), (made_of == DASHED).all(axis=0)
     # one lane has all the room between two borders, and beside an island
     shared = np.where(count > 1, some | dashed, some & ~(apart | every | beside_island(*made_of)))
-    driven = (count == 1) & apart & SURFACE_END[made_of].any(axis=0) & ~shared
     parts = _shares(boundaries, spans, *borders, made_of, lane_width, line_distance)
     for k in np.flatnonzero(shared).tolist():
         parts[k] = _where_driven(parts[k], boundaries.s, estimate, np.maximum(parts[k].width - lane_width, 0.0), spans[k].count, some[k])
-    for k in np.flatnonzero(driven).tolist():
-        drives, passes = _drives(parts[k].stations, boundaries.s, estimate, (1, 0, -1))
-        drives = drives[passes < estimate.evidence.own]
-        parts[k] = replace(parts[k], d=drives[np.abs(drives - parts[k].d).mean(axis=1).argmin()])
     for _, strip in groupby(zip(spans, parts), lambda one: (one[0].interval, one[0].left, one[0].right)):
         yield from _shared(list(strip), estimate.weights.most_in_doubt)
 

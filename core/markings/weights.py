@@ -84,7 +84,6 @@ class COMPOUNDS:
     width_tolerance: int = 2   # cells across by which it may be uneven
     max_width_alone: float = 0.34   # m of an even strip with nothing beside it; a double line is broader
     min_length_beside_bar: float = 1.0   # m along the road: what is shorter is nothing but a bar
-    ragged_rim: float = 0.12   # m that a bar may reach farther along the road at a place; the tip of an arrow is longer
     max_paint_gap: float = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
     max_scan_gap: float = 0.40   # m between scan lines, closed
     min_stop_line_piece: float = 0.8   # m across: a row of shorter blocks is a give-way line
@@ -255,14 +254,12 @@ class LINKS:
     end_window: float = 6.0   # m of a strand's end that say where it goes
     min_paint_beside_gap: float = 3.0   # m that either side of a long gap must have
     max_strand_overlap: float = 0.6   # m that two strands of one line may overlap
-    max_stray_length: float = 4.0   # m: longer strands make their own case
     max_miss: float = 0.30   # m across that two lines may miss each other by over the longest gap; half of it where they touch,
     max_long_miss: float = 0.25   # m, and by which over any longer one
     double_line_spacing: tuple[float, float] = (0.19, 0.50)   # m between the middles of the two lines of a double line
     twin_reach: float = 2.0   # m before and after a place at which the other line of a double line is looked for
     middle_share: tuple[float, float] = (0.25, 0.75)   # of the way from one line of a double to the other: its middle
     cost_without_link: float = 2.01   # the worst possible link costs 1 for its mismatch and 1 for its gap
-    cost_of_stray: float = 0.5   # of a strand left out: one of 2 m in a gap of 9 m is left out where it lies 0.11 m aside
 
 
 @table

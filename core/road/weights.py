@@ -127,7 +127,6 @@ class CURBS:
     weak_scatter_factor: float = 2.0   # times the scatter at which a faint step is still a curb where it continues one
     low_curb_share: float = 0.5   # share of the least curb height from which a lower curb that continues a full one is used
     min_sloped_length: float = 10.0   # m of a sloped curb: the edge of worn cobbles or of a track is straight over a few metres
-    max_wander: float = 0.008   # m of a sloped curb about its own straight line
     faint_gain: float = 0.7   # value of a metre of low or sloped curb, where another may be chosen
     min_curb_length: float = 4.0   # m of chains in one line that make a curb
     max_chain_gap: float = 8.0   # m between chains of one line
@@ -656,7 +655,6 @@ class SURFACE:
     row_share: float = 0.5   # of one sigma of a single row, that a line through rows is off by: neighbours are off together
     max_row_jump: float = 0.5   # m across from one row to the next at which a line ends: a street joins
     max_line_miss: float = 0.2   # m, of single rows from one even bend through both sides of a gap that is longer than `max_gap`
-    meeting_length: float = 0.5   # m at the end of a line in which it may meet a curb
     min_likely_share: float = 0.5   # of a gap in which the edge is rather there than not, for the line to go on as measured
     # points and obstacles
     min_obstacle_height: float = 0.25   # m above the road, from: curbs and stray points are lower, and

@@ -40,6 +40,7 @@ from ...core.common.errors import RoadExtractionError
 from ...processing_provider.results.road_maps import last_run
 from ...processing_provider.styling import PROVIDER
 from ...processing_provider.texts import tr
+from ..background import UNDER_WAY
 from ..review.corrections_layer import SURVEY, corrections_layers
 from ..survey_widgets import trajectory_beside
 from ..widgets import LAST_INPUT, answers, button, column, folder_for_results, tell_result, wrapped
@@ -69,16 +70,13 @@ class _OnePlaceForAll:
         self.messageBar().pushMessage("", text, level=Qgis.MessageLevel.Info)
 
 
-_RUNNING: set[LanewrightDialog] = set()   # a run goes on when its dialog is closed; context and feedback, which it works with, are the dialog's
-
-
 class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
     """QGIS's dialog of an algorithm; `title` stands in its frame."""
 
     def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
         super().__init__(algorithm, False, parent)
         self.setWindowTitle(title)
-        self.algorithmFinished.connect(lambda *result: _RUNNING.discard(self))
+        self.algorithmFinished.connect(lambda *result: UNDER_WAY.pop(self, None))
         if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
             self.save_button = self._button(tr("Save everything to…"), tr("One place for all results: a folder with the layers as tables of one "
                                                                           "GeoPackage, images and reports beside it; or a database"))
@@ -104,7 +102,7 @@ class LanewrightDialog(_OnePlaceForAll, AlgorithmDialog):
 
     def setCurrentTask(self, task: QgsProcessingAlgRunnerTask) -> None:
         """Begin the run, and stay in memory until it ends."""
-        _RUNNING.add(self)
+        UNDER_WAY[self] = task
         super().setCurrentTask(task)
 
     def _fold_outputs(self, names):

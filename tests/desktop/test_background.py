@@ -3,7 +3,7 @@
 import gc
 
 import pytest
-from lanewright.desktop.background import BackgroundRun
+from lanewright.desktop.background import BackgroundRun, end_runs
 from lanewright.desktop.dialogs.algorithm_dialog import LanewrightDialog
 from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer
@@ -47,3 +47,10 @@ def test_a_run_goes_on_where_its_dialog_is_closed_and_another_takes_its_place(su
     gc.collect()   # likewise
     wait_for(ended)
     assert ended == [True]
+
+
+def test_a_run_has_ended_before_the_plugin_goes(survey):
+    ended = []
+    BackgroundRun("samplesurvey", {**survey, "LENGTH": 2000.0}, lambda run, fine: ended.append(fine))
+    end_runs()
+    assert ended == [False]

@@ -66,7 +66,7 @@ def test_results_are_compared_by_value():
 
 
 def test_the_weight_of_a_rule_is_what_nothing_else_uses():
-    whole, alone = SWITCHES["pieces in line"], SWITCHES["wander of sloped chains"]
+    whole, alone = SWITCHES["pieces in line"], SWITCHES["steps followed by few points"]
     assert weight(whole)[0] > 50 > weight(alone)[0] > 5
     # lines across gaps serve road edges too
     assert not any(name == "GapLine" for _, name in rule_parts(whole.rule))

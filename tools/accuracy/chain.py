@@ -62,14 +62,15 @@ def _outliers(w, settings):
 
 
 def _clusters(w, settings):
-    w.marking_objects, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
+    w.unnamed, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
+    w.marking_objects = w.unnamed
     w.markings = w.marking_objects.to_features(w.frame)
 
 
 def _lines(w, settings):
-    w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines, edges=w.edges.densified(w.frame),
+    w.lines = fit_marking_lines(w.clustered, w.unnamed, w.frame, settings.lines, edges=w.edges.densified(w.frame),
                                 road_points=w.bright)
-    w.marking_objects = named_by_lines(w.marking_objects, w.lines)
+    w.marking_objects = named_by_lines(w.unnamed, w.lines)
     w.markings = w.marking_objects.to_features(w.frame)
 
 

@@ -35,7 +35,7 @@ from ..cross_section.weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, EstimateW
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from ..weights import STRANDS
-from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint, without_strays
+from .linking import CommonTrend, link_lines, link_over_long_gaps, weighted_medians, with_paint_between_tracks, with_unseen_paint
 from .painted_lines import CONFIRMED, PaintedLines, painted_lines_of
 from .selection import SelectedLine, same_dash_pattern, select_lines
 from .strands import EdgesBeside, LinkedLine, edges_beside, line_paint, painted_strands
@@ -380,9 +380,8 @@ def _linked(strands, edges, settings):
     """Lines of strands, and the CommonTrend they have in common."""
     trend = CommonTrend(strands)
     lines = link_lines([LinkedLine([strand]) for strand in strands], trend, edges, settings.max_gap)
-    lines = link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
-                                partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
-    return without_strays(lines, trend, edges, settings.max_gap, settings.max_bridge), trend
+    return link_over_long_gaps(lines, trend, edges, settings.max_gap, settings.max_bridge,
+                               partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash)), trend
 
 
 def _drawn_pieces(one: SelectedLine, line: _DrawnLine, frame: RoadFrame, road: int) -> Iterator[dict[str, Any]]:

@@ -100,15 +100,10 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, 
     pairs = [(a, b) for a, b in _facing(starts, ends, -LINKS.max_strand_overlap, max_gap)
              if lines[b].last > lines[a].last and not _between_twins(twin_ends[a], twin_starts[b], ends[a], starts[b])
              and (abs(ends[a].slope - starts[b].slope) <= TREND.max_line_slope or min(ends[a].reach, starts[b].reach) <= 3.0)]
-    gap, limit = _gaps_and_limits(pairs, ends, starts, max_gap)
+    gap = np.array([max(starts[b].s - ends[a].s, 0.0) for a, b in pairs])
+    limit = LINKS.max_miss * (0.5 + 0.5 * gap / max_gap) + np.array([ends[a].open + starts[b].open for a, b in pairs])
     cost = (_misses(pairs, ends, starts, lines, trend, edges, limit) / limit) ** 2 + gap / max_gap
     return _joined(lines, assigned_links([(cost[k], *pairs[k]) for k in np.flatnonzero(np.isfinite(cost)).tolist()]))
-
-
-def _gaps_and_limits(pairs, ends, starts, max_gap):
-    """(2, P) gaps along the road between the ends and starts of pairs, and m across that these may miss each other by."""
-    gap = np.array([max(starts[b].s - ends[a].s, 0.0) for a, b in pairs])
-    return gap, LINKS.max_miss * (0.5 + 0.5 * gap / max_gap) + np.array([ends[a].open + starts[b].open for a, b in pairs])
 
 
 def _facing(starts, ends, least, most):
@@ -210,30 +205,6 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, edges: Edge
             return lines
         # the pattern and the course of a longer line are known better: search again
         lines = _joined(lines, assigned_links(pairs))
-
-
-def without_strays(lines: list[LinkedLine], trend: CommonTrend, edges: EdgesBeside, max_gap: float, max_bridge: float) -> list[LinkedLine]:
-    """Lines less short strands beside their course: of all ways along each, that whose links, as of `link_lines`, and strands left out cost least."""
-    strands, line_of = [LinkedLine([strand]) for line in lines for strand in line.strands], [k for k, line in enumerate(lines) for _ in line.strands]
-    starts, ends = (_line_ends(strands, trend, at_start) for at_start in (True, False))
-    facing = _facing(starts, ends, -LINKS.max_strand_overlap, max_bridge)
-    pairs = sorted((pair for pair in facing if line_of[pair[0]] == line_of[pair[1]]), key=lambda pair: pair[1])
-    gap, limit = _gaps_and_limits(pairs, ends, starts, max_gap)
-    cost = (_misses(pairs, ends, starts, strands, trend, edges, np.inf) / limit) ** 2 + gap / max_gap
-    without = [LINKS.cost_of_stray if strand.painted <= LINKS.max_stray_length else np.inf for strand in strands]
-    least, before = np.where(np.diff(line_of, prepend=-1) > 0, 0.0, np.inf).tolist(), {}
-    for (a, b), of_link in zip(pairs, cost.tolist()):
-        of_way = least[a] + of_link + sum(without[a + 1:b])
-        if of_way < least[b]:
-            least[b], before[b] = of_way, a
-    kept, end = [], 0
-    for line in lines:
-        first, end = end, end + len(line.strands)
-        way = [end - 1]
-        while way[-1] in before:
-            way.append(before[way[-1]])
-        kept.append(LinkedLine([line.strands[k - first] for k in reversed(way)]) if way[-1] == first else line)
-    return kept
 
 
 def _runs_beside(lines, beside, pair, before, after, trend):

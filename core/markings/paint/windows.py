@@ -209,13 +209,13 @@ def _painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityI
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
     pixels = np.floor(image.pixel_of(*road.to_map(s, d), origin)).astype(np.int64)
-    inside = ((pixels >= 0) & (pixels < [[image.width], [image.height]])).all(axis=0)
+    inside = np.flatnonzero(((pixels >= 0) & (pixels < [[image.width], [image.height]])).all(axis=0))
     # each pixel once, by one of the places in it
-    pixels, nearest = np.unique(pixels[:, inside], axis=1, return_index=True)
+    nearest = inside[np.unique(pixels[0, inside] * image.height + pixels[1, inside], return_index=True)[1]]
     left, size, _, top, _, _ = image.geotransform
-    x, y = (left - origin[0]) + (pixels[0] + 0.5) * size, (top - origin[1]) - (pixels[1] + 0.5) * size
-    places = np.array(road.locate(x, y, s[inside][nearest], np.inf))
+    x, y = (left - origin[0]) + (pixels[0, nearest] + 0.5) * size, (top - origin[1]) - (pixels[1, nearest] + 0.5) * size
+    places = np.array(road.locate(x, y, s[nearest], np.inf))
     row, column = np.floor(np.nan_to_num(places, nan=-np.inf) / CELL_SIZE) - np.array(first)[:, None]
     painted = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
     painted[painted] = cells[row[painted].astype(int), column[painted].astype(int)]
-    return pixels[0, painted], pixels[1, painted]
+    return pixels[0, nearest[painted]], pixels[1, nearest[painted]]

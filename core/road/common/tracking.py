@@ -22,7 +22,6 @@ from ...curves.robust import MAD_TO_SIGMA, median, percentiles
 from ..weights import CURBS, EDGE
 from .corners import CurbSteps
 from .curb_limits import CurbLimits
-from .pseudo_scanlines import expand_ranges
 
 if TYPE_CHECKING:
     from ..surface.road_look import RoadLook
@@ -139,7 +138,7 @@ def _as_curb(steps, members, length, limits):
     allowance = min(scanner_noise, CURBS.max_noise_allowance * least) if scanner_noise > CURBS.noisy_share * least else 0.0
     chain = StepChain(members, float(s[0]), float(s[-1]), bool(height < least - allowance), bool(slope < limits.clear_slope), scatter)
     if not is_clean(noise, scanner_noise, steps.behind[members], scatter) \
-            or chain.sloped and (length < CURBS.min_sloped_length or _wander(steps, members) > CURBS.max_wander):
+            or chain.sloped and length < CURBS.min_sloped_length:
         return chain, 0
     if not chain.faint:
         return chain, 2
@@ -188,17 +187,6 @@ def _continuing(chains, weak, steps):
 def _along(chain, sign):
     """Begin and end of a chain along the road (1), or against it (-1)."""
     return (chain.start, chain.end) if sign > 0 else (-chain.end, -chain.start)
-
-
-def _wander(steps, members):
-    """m, deviation of a chain from its own straight line over CURBS.min_faint_length metres: the slope of a bank or of wear changes its place."""
-    s, u = steps.s[members], steps.u[members]
-    half = 0.5 * CURBS.min_faint_length
-    owner, index = expand_ranges(np.searchsorted(s, s - half), np.searchsorted(s, s + half, side="right"))
-    ds, count = s[index] - s[owner], np.bincount(owner)
-    ms, mu, ss, su = (np.bincount(owner, v) / count for v in (ds, u[index], ds * ds, ds * u[index]))
-    slope = (su - ms * mu) / np.maximum(ss - ms * ms, 1e-6)
-    return float(np.std(u - (mu - slope * ms)))
 
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps, near: Callable[..., np.ndarray],

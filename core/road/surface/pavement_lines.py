@@ -2,7 +2,7 @@
 
 A line is drawn where road inside and other ground outside were measured; where something hides both, it is bridged as curbs are. Where height alone
 tells them apart, as on a slope that may begin beyond a level verge, it is inferred.
-Where nothing tells the pavement from what lies beside it, there is no line, nor where it would run across a curb.
+Where nothing tells the pavement from what lies beside it, there is no line.
 """
 
 from __future__ import annotations
@@ -10,16 +10,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import shapely
 from scipy.interpolate import make_smoothing_spline
 from scipy.ndimage import uniform_filter1d
 
 from ...common.arrays import stretch_of
-from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...survey.frame.road_frame import RoadFrame
 from ...survey.open_survey import Survey
-from ..common.pseudo_scanlines import nearest_distance
 from ..common.tracking import GapLine
 from ..edges.fit import EdgeSettings
 from ..edges.road_edges import EdgePiece, RoadEdges
@@ -68,7 +65,6 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
     stations = carriageway.cells.stations
     has_road = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     curbs = edge_offsets(edges, road, stations)
-    curb_lines = shapely.STRtree(shapely.force_2d(edges.on_map(frame)[edges.of_curb & (edges.status == "measured")]))
     for side, grown in carriageway.grown.items():
         curb = curbs[side][0]
         free = has_road & np.isnan(curb)
@@ -76,34 +72,11 @@ def _pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edge
         shown = grown.shown & (free | has_road & (np.abs(np.nan_to_num(curb, nan=np.inf) - grown.offset) <= SURFACE.max_row_jump))
         agreeing = uniform_filter1d(shown.astype(float), int(SURFACE.agreeing_length / SURFACE.row_length) | 1, mode="constant") > 0.5
         places = np.array(frame.to_map(road, stations, grown.offset))
-
-        rows, crossing, lines = free, free, []
-        while crossing.any():
-            check_cancelled()
-            likely = rows & grown.likely
-            runs = _lines(rows & agreeing, agreeing & (rows | ~free), likely, likely | rows & grown.hidden, grown.offset, places, max_gap)
-            lines = [_drawn(frame, road, side, carriageway, grown, run) for run in runs]
-            # whatever was taken for an edge that crosses a curb, it is seen in averages of that length
-            crossings = np.concatenate([np.empty(0), *(_crossings(piece, curb_lines) for pieces in lines for piece in pieces)])
-            crossing = rows & (nearest_distance(stations, crossings) <= SURFACE.agreeing_length)
-            rows = rows & ~crossing
-        for pieces in lines:
+        likely = free & grown.likely
+        for run in _lines(free & agreeing, agreeing, likely, likely | free & grown.hidden, grown.offset, places, max_gap):
             number = chain + len(result)
-            result += [replace(piece, chain=number) for piece in pieces]
+            result += [replace(piece, chain=number) for piece in _drawn(frame, road, side, carriageway, grown, run)]
     return result
-
-
-def _crossings(piece, curb_lines):
-    """(K,) stations at which a piece that is no bridge crosses lines of a STRtree, not those at which it ends at one."""
-    if piece.status == "bridged":
-        return np.empty(0)
-    line = shapely.linestrings(piece.vertices[:, :2])
-    met = shapely.union_all(curb_lines.geometries[np.sort(curb_lines.query(line, predicate="intersects"))])
-    points = shapely.points(shapely.get_coordinates(shapely.intersection(line, met)))
-    along = shapely.line_locate_point(line, points)
-    inside = (along > SURFACE.meeting_length) & (along < line.length - SURFACE.meeting_length)
-    distance = np.r_[0.0, np.cumsum(np.hypot(*np.diff(piece.vertices[:, :2], axis=0).T))]
-    return np.interp(along[inside], distance, np.linspace(piece.station, piece.end, len(distance)))
 
 
 def _lines(shown, confirmed, likely, possible, offset, places, max_gap):

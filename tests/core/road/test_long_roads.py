@@ -3,7 +3,6 @@
 import curbed_streets as streets
 import numpy as np
 import pytest
-import shapely
 from curbed_streets import EAST, NORTH
 from lanewright.core.execution.phase import Threads
 from lanewright.core.road.common import tracking
@@ -14,7 +13,7 @@ from lanewright.core.road.curb_returns.main_curbs import KnownPlaces, SearchLimi
 from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
 from lanewright.core.road.edges import corner_edges, road_edges
 from lanewright.core.road.edges.road_edges import EdgePiece, joined_pieces
-from lanewright.core.road.surface import ground_grid, pavement_edge, pavement_lines
+from lanewright.core.road.surface import ground_grid, pavement_edge
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.ground_grid import MeasuredGround
 from lanewright.core.road.weights import SURFACE
@@ -199,12 +198,7 @@ def test_places_that_become_known_later_are_known_like_the_first():
     assert len(known._trees) < 6
 
 
-def test_where_a_pavement_edge_crosses_curbs_is_what_all_curbs_together_tell():
-    line = edge_pieces(1)[0]
-    curbs = [shapely.linestrings([(EAST + x, NORTH), (EAST + x + 0.5, NORTH + 7.0)]) for x in (-300.0, 8.0, 8.2, 15.0, 400.0)]
-    tree = shapely.STRtree(curbs)
-    met = shapely.get_coordinates(shapely.intersection(shapely.linestrings(line.vertices[:, :2]), shapely.union_all(curbs)))
-    np.testing.assert_allclose(np.sort(pavement_lines._crossings(line, tree)), np.sort(met[:, 0] - EAST), atol=1e-6)
+def test_the_nearest_of_some_places_is_found_and_without_any_none_is_near():
     places = np.arange(0.0, 40.0, 0.5)
     np.testing.assert_array_equal(nearest_distance(places, np.array([30.0, 7.0])), np.minimum(np.abs(places - 7.0), np.abs(places - 30.0)))
     assert np.isinf(nearest_distance(places, np.empty(0))).all()

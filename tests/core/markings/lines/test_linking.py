@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from lanewright.core.markings.lines.fit import MarkingLineSettings
-from lanewright.core.markings.lines.linking import CommonTrend, assigned_links, link_lines, without_strays
+from lanewright.core.markings.lines.linking import CommonTrend, assigned_links, link_lines
 from lanewright.core.markings.lines.strands import EdgesBeside, LinkedLine, Strand
 
 
@@ -52,27 +52,3 @@ def test_the_last_dash_is_of_its_line_where_the_lines_of_the_other_carriageway_l
 def test_a_line_ends_at_an_island_and_goes_on_past_one_that_lies_beside_it(aside, lines):
     island = EdgesBeside([], [shapely.get_coordinates(shapely.box(13.0, aside - 0.8, 19.0, aside + 0.8))])
     assert len(linked([strand(0.0, 12.0, np.zeros_like), strand(20.0, 40.0, np.zeros_like)], island)) == lines
-
-
-def kept_of(course, aside=0.0, at=27.0):
-    """First stations of the dashes of a line along a course that are kept, one of which lies aside."""
-    dashes = [strand(first, first + 3.0, lambda s, off=aside * (first == at): course(s) + off) for first in np.arange(0.0, 81.0, 9.0)]
-    line, = without_strays([LinkedLine(dashes)], CommonTrend([]), EdgesBeside([]), MarkingLineSettings().max_gap, MarkingLineSettings().max_bridge)
-    return [one.first for one in line.strands]
-
-
-def smooth_taper(s):
-    """2 m across along 40 m, beside a pocket that opens; so do straight dashes run beside a vehicle that turns aside into it."""
-    t = np.clip((s - 15.0) / 40.0, 0.0, 1.0)
-    return 2.0 * t * t * (3.0 - 2.0 * t)
-
-
-@pytest.mark.parametrize("course", [np.zeros_like, smooth_taper, lambda s: 0.05 * np.clip(s - 15.0, 0.0, 30.0), lambda s: s**2 / 1000.0])
-def test_dashes_are_of_one_line_where_they_bend_and_one_beside_it_is_not(course):
-    """No other line runs along them, and no edge: straight on, along a taper with rounded or with sharp ends, and in a bend of 500 m."""
-    assert len(kept_of(course)) == 9
-    assert kept_of(course, 0.25) == [first for first in kept_of(course) if first != 27.0]
-
-
-def test_what_lies_beside_the_end_of_a_line_is_kept_as_nothing_shows_where_it_goes_on():
-    assert len(kept_of(np.zeros_like, 0.25, at=72.0)) == 9

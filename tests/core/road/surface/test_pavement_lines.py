@@ -11,7 +11,6 @@ from lanewright.core.road.surface import pavement_lines
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.road.surface.ground_grid import MeasuredGround, median_about, roughness_of_rows, sum_about
 from lanewright.core.road.surface.pavement_lines import with_pavement_edges
-from lanewright.core.road.weights import SURFACE
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
@@ -317,32 +316,6 @@ def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone(p
     both = with_pavement_edges(survey, curbs)
     assert both.side[both.what == "curb"].tolist() == ["left"] * len(curbs) and set(both.side[both.what == "pavement"]) == {"right"}
     assert len(set(both.chain)) == 2
-
-
-def curb_across(survey, *places):
-    """A curb of an island through (along, across) places of the street."""
-    x, y = np.array(places, float).T
-    island = EdgePiece(np.c_[x + EAST, y + NORTH, np.full(len(x), 100.0)], 0, "left", "measured", 0, x.min(), x.max(), 5.0, kind="island")
-    return joined_pieces([island], survey.frame)
-
-
-def test_an_edge_of_the_pavement_does_not_run_across_a_curb(plain):
-    survey = plain[0]
-    drawn = with_pavement_edges(survey, curb_across(survey, (30.0, 1.5), (30.0, 8.0)))
-    left = [places[:, 0] for (_, places), side, what in zip(on_map(drawn, survey), drawn.side, drawn.what) if (side, what) == ("left", "pavement")]
-    assert len(left) == 2
-    assert left[0].max() == pytest.approx(30.0 - SURFACE.agreeing_length, abs=1.0)
-    assert left[1].min() == pytest.approx(30.0 + SURFACE.agreeing_length, abs=1.0)
-    right = drawn[drawn.side == "right"]
-    assert len(right) == 1 and right.length[0] > LENGTH - 5.0
-
-
-def test_a_curb_beside_the_edge_or_at_its_end_changes_nothing(plain):
-    survey, alone = plain
-    end = max(places[:, 0].max() for _, places in on_map(alone, survey))
-    for places in (((20.0, 5.0), (40.0, 5.0)), ((end - 0.2, 1.5), (end - 0.2, 8.0))):
-        beside = with_pavement_edges(survey, curb_across(survey, *places))
-        np.testing.assert_array_equal(beside.length[beside.what == "pavement"], alone.length)
 
 
 def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured(plain):
