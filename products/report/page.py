@@ -180,6 +180,7 @@ MAP_STYLE = (
     ("markings", None, (80, 220, 255), 1, True),
     ("edges", ("status", "measured"), (60, 60, 230), 3, False),
     ("edges", ("status", "bridged"), (60, 150, 255), 3, False),
+    ("edges", ("status", "inferred"), (120, 60, 200), 3, False),
     ("differences", None, (255, 60, 230), 7, False),
     ("marking_lines", None, (230, 200, 60), 2, False),
     ("driving_lines", ("status", "measured"), (90, 220, 60), 3, False),

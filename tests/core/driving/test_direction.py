@@ -238,27 +238,32 @@ def test_a_strip_between_solid_lines_that_no_lane_could_be_entered_through_parts
         round(side * (middle + 3.6 * (number + 0.5)), 1): -side for side in (1, -1) for number in range(lanes)}
 
 
-def falls(street, *lines, crown):
-    """A street with dashed lines at offsets, 2 % lower with each metre across: `crown` says where the road is highest."""
+FOUR, TWO = (-6.2, -3.1, 0.0, 3.1, 6.2), (-3.1, 0.0, 3.1)
+
+
+@pytest.mark.parametrize("lines, crown, fall, ways_from_right", [
+    (FOUR, 0.0, 0.02, (1, 1, -1, -1)), (FOUR, 6.2, 0.02, (1, 1, 1, 1)), (FOUR, 0.0, 0.012, (1, 1, 1, 1)), (FOUR, 0.0, -0.02, (1, 1, 1, 1)),
+    (TWO, 0.0, 0.02, (1, -1)), (TWO, 0.0, 0.0, (1, -1)), (TWO, 3.1, 0.02, (1, 1)), (TWO, -3.1, 0.02, (1, 1))])
+def test_directions_part_where_the_road_falls_to_both_sides_rather_than_where_it_falls_to_one(lines, crown, fall, ways_from_right):
+    """Lanes between dashed lines alone, one right of the middle driven. A road lowest in its middle, or nearly level, tells nothing."""
+    street = Street(length=150.0, vehicle=-1.55)
     for offset in lines:
-        street.paint(offset, pattern="dashed", z=HEIGHT - 0.02 * abs(offset - crown))
-    return street
-
-
-@pytest.mark.parametrize("ways_from_right, crown", [((1, 1, -1, -1), 0.0), ((1, 1, 1, 1), 6.2)])
-def test_directions_part_where_the_road_falls_to_both_sides_rather_than_where_it_falls_to_one(ways_from_right, crown):
-    """Four lanes between dashed lines alone, driven in one of the two in the middle."""
-    street = falls(Street(length=150.0, vehicle=-1.55), -6.2, -3.1, 0.0, 3.1, 6.2, crown=crown)
+        street.paint(offset, pattern="dashed", z=HEIGHT - fall * abs(offset - crown))
     street.frame.crs = "EPSG:32632"
-    assert ways(street) == dict(zip((-4.65, -1.55, 1.55, 4.65), ways_from_right))
+    assert tuple(ways(street)[offset + 1.55] for offset in lines[:-1]) == ways_from_right
 
 
-@pytest.mark.parametrize("station, way", [(10.0, -1), (105.0, 1)])
-def test_no_lane_leads_away_from_the_stop_line_across_it(station, way):
-    """Two lanes with dashes between them, on the near one of which was driven; the other one has a stop line where the lines end."""
-    street, stops = Street(length=120.0, vehicle=-1.75), Features("PolygonZ", MARKINGS)
+@pytest.mark.parametrize("crs, vehicle, station, way", [("", -1.75, 10.0, -1), ("", -1.75, 105.0, 1), ("", 1.75, 105.0, 1),
+                                                        ("EPSG:32632", 1.75, 10.0, -1), ("EPSG:32755", -1.75, 10.0, -1)])
+def test_no_lane_leads_away_from_the_stop_line_across_it(crs, vehicle, station, way):
+    """Two lanes with dashes between them, one of which was driven; the other one has a stop line where the lines end.
+
+    Without one they lead apart, but alike where the driven lane is that of overtaking in the country.
+    """
+    street, stops = Street(length=120.0, vehicle=vehicle), Features("PolygonZ", MARKINGS)
+    street.frame.crs = crs
     for offset, pattern in ((3.5, "solid"), (0.0, "dashed"), (-3.5, "solid")):
         street.paint(offset, 12.0, 103.0, pattern=pattern)
-    corners = street.places(np.array([station, station, station + 0.5, station + 0.5]), np.array([0.1, 3.4, 3.4, 0.1]))
+    corners = street.places(np.array([station, station, station + 0.5, station + 0.5]), -np.sign(vehicle) * np.array([0.1, 3.4, 3.4, 0.1]))
     stops.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "stop", "use": "other"})
-    assert ways(street, markings=stops) == {-1.75: 1, 1.75: way}
+    assert ways(street, markings=stops) == {vehicle: 1, -vehicle: way}

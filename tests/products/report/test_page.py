@@ -50,9 +50,10 @@ def test_a_page_that_lacks_a_value_is_not_written():
         html_page("intensity_correction")
 
 
-def test_an_edge_is_drawn_where_it_lies():
+@pytest.mark.parametrize("status", ["measured", "bridged", "inferred"])
+def test_an_edge_is_drawn_where_it_lies(status):
     edges = Features("LineStringZ", ROAD_EDGES)
-    edges.add(LineString([(0, 5, 0), (10, 5, 0)]), status="measured")
+    edges.add(LineString([(0, 5, 0), (10, 5, 0)]), status=status)
     image = draw_map({"edges": edges}, bounds=(0, 0, 10, 10), longest=100)
     assert image.shape == (100, 100, 3)
     red = image[:, :, 2].astype(int) - image[:, :, 1]
