@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import MARKINGS, Features
+from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
 from lanewright.core.countries.traffic_side import side_of_traffic
 from lanewright.core.markings.cross_section.roads import usual_side
 from lined_streets import EAST, HEIGHT, NORTH, Street, middle
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 
 
 def two_lanes(**drive):
@@ -251,6 +251,20 @@ def test_directions_part_where_the_road_falls_to_both_sides_rather_than_where_it
         street.paint(offset, pattern="dashed", z=HEIGHT - fall * abs(offset - crown))
     street.frame.crs = "EPSG:32632"
     assert tuple(ways(street)[offset + 1.55] for offset in lines[:-1]) == ways_from_right
+
+
+@pytest.mark.parametrize("fall, far_lane", [(0.025, -1), (0.0, 1)])
+def test_a_curb_shows_that_the_road_falls_to_its_side_too(fall, far_lane):
+    """Three lanes between curbs, highest between the middle lane and the far one, beyond which nothing but the curb lies."""
+    street, edges = Street(length=150.0, vehicle=-3.1), Features("LineStringZ", ROAD_EDGES)
+    for offset in (-1.55, 1.55):
+        street.paint(offset, pattern="dashed", z=HEIGHT - fall * abs(offset - 1.55))
+    along = np.arange(5.0, 145.0)
+    for chain, (offset, side) in enumerate(((-4.65, "right"), (4.65, "left"))):
+        places = street.places(along, np.full(len(along), offset))
+        edges.add(LineString(np.c_[places, np.full(len(along), HEIGHT - fall * abs(offset - 1.55))]), road=0, side=side, kind="main", edge="curb",
+                  status="measured", chain=chain)
+    assert ways(street, edges=edges) == {-3.1: 1, 0.0: 1, 3.1: far_lane}
 
 
 @pytest.mark.parametrize("crs, vehicle, station, way", [("", -1.75, 10.0, -1), ("", -1.75, 105.0, 1), ("", 1.75, 105.0, 1),
