@@ -52,11 +52,11 @@ class ScannerScatter:
         """What to warn of where brightness is, or may be, that of photographs, "" for nothing; `length` is that of a window, metres."""
         if self.photographed > 0.0:
             along = length * sum(bool(count.sum()) for count in self.points.values())
-            return (f"Along {along:.0f} m brightness is that of colours, or neighbouring points are as alike as in photographs. Paint is compared "
-                    "with the ground around each spot there, and edges of shadows may be taken for it: look at these markings, or give the scanner's "
-                    "own intensity.")
-        return ("Neighbouring points are nearly as alike as in photographs, but brightness is taken for the scanner's own: look at the intensity "
-                "image." if self.photographed > -ASPHALT.doubtful_photographs else "")
+            return (f"Along {along:.0f} m brightness is that of colours, or points that are neighbours, or that several scanners or passes saw at "
+                    "one place, are as alike as in photographs. Paint is compared with the ground around each spot there, and edges of shadows may "
+                    "be taken for it: look at these markings, or give the scanner's own intensity.")
+        return ("Points are nearly as alike as in photographs, but brightness is taken for the scanner's own: look at the intensity image."
+                if self.photographed > -ASPHALT.doubtful_photographs else "")
 
     def summary(self, length: float) -> str:
         """A sentence for a log; `length` is that of a window, metres."""
