@@ -574,7 +574,6 @@ class LANES:
     other_sigma: float = 0.8   # m, scatter of lane widths from road to road
     stop_margin: float = 0.5   # m by which a stop line may reach beyond the lanes that it is for
     min_scanned_share: float = 0.6   # of a lane's width that must be seen of a lane beside the end of the surface
-    least_fall: float = 0.015   # of a road across: less is not built so that water runs off (AASHTO Green Book 4.2.2)
     same_divider: int = 1   # places by which the same border between lanes may lie elsewhere
 
 

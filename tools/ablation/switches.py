@@ -319,7 +319,6 @@ ROWS = (
     _evidence("which way arrows point", arrow_against=0.0),
     _evidence("stop lines", split_stop=0.0, outer_stopped=0.0, stop_behind=0.0),
     _evidence("which way arrows point and stop lines", arrow_against=0.0, split_stop=0.0, outer_stopped=0.0, stop_behind=0.0),
-    _evidence("to which side the road falls", crowned=(0.0, 0.0)),
     _evidence("how many lanes lead which way", one_way=(0.0,) * 4, uneven=0.0, two_and_one=0.0),
     _evidence("another carriageway driven beside this one", two_way_carriageway=0.0),
     _evidence("a road driven more than once and never back", never_back=0.0),

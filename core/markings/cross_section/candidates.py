@@ -54,7 +54,6 @@ class Boundaries(_MadeOf):
     paint: np.ndarray   # (R,) m of paint of each row
     named: np.ndarray   # (R,) what a row separates by its layer, -1 where that is not said
     wide: RowTable   # (R, K) 0 to 1, whether a row is a wide line, which is at least twice as broad as the usual lines of its road
-    z: RowTable   # (R, K) m, heights of lines and curbs, NaN of others
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
@@ -72,13 +71,11 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     usual = np.array([_made_of(name) for name in lines.patterns], np.int8)
     drawn, owner = lines.drawn.values, lines.d.spans.owner
     # offsets, where they were seen, what rows are made of, as a whole and at each place
-    heights = [lines.z]
     tables = [(lines.d, lines.seen.values, np.full(len(lines.d), SOLID), lines.d.like(np.where(drawn >= 0, of_name[drawn], usual[owner]), usual))]
     if curbs is not None:
         made_of = np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB).astype(np.int8)
-        d, seen, z = _on_stations(curbs, lines.s)
+        d, seen = _on_stations(curbs, lines.s)
         tables.append((d, seen.values, made_of, d.like(made_of[d.spans.owner], made_of)))
-        heights.append(z)
     ends: list[tuple[RowTable, int, np.ndarray | int]] = []
     if surface is not None:
         surface, at_edge = _at_edges(surface, pavement, lines.s)
@@ -98,8 +95,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
     paint = STATION_STEP * np.bincount(found_d.spans.owner, found_seen, len(found_d))
     return Boundaries(lines.s, found_d, found_d.like(found_seen, False), np.concatenate([made_of for _, _, made_of, _ in tables]), all_patterns,
                       paint, np.r_[[NAMES.get(kind, -1) for kind in lines.kinds], np.full(unpainted, -1)].astype(int),
-                      *(found_d.like(np.append(known, np.full(found_d.spans.size - len(known), np.nan)), np.nan)
-                        for known in (_wide_share(lines), np.concatenate([z.values for z in heights]))))
+                      found_d.like(np.append(wide := _wide_share(lines), np.full(found_d.spans.size - len(wide), np.nan)), np.nan))
 
 
 def _up_to_areas(d, number, hatching):
@@ -159,16 +155,16 @@ def _bare_borders(d):
 
 
 def _on_stations(sections, s):
-    """Offsets of CrossSections at (K,) stations, NaN where they are not, where they were seen, and heights."""
+    """Offsets of CrossSections at (K,) stations, NaN where they are not, and where they were seen."""
     by = int(np.rint((s[0] - sections.s[0]) / STATION_STEP))
-    return [table.shifted(by, len(s)) for table in (sections.d, sections.seen, sections.z)]
+    return sections.d.shifted(by, len(s)), sections.seen.shifted(by, len(s))
 
 
 def _at_edges(surface, pavement, s):
     """The ends of the surface moved to the edges of the pavement that were seen there, and where that is, (2, K) bool."""
     nearest = np.full(surface.shape, np.nan)
     if pavement is not None and len(pavement.d):
-        d, seen, _ = _on_stations(pavement, s)
+        d, seen = _on_stations(pavement, s)
         for of_side, ends in zip(nearest, surface):
             offset = d.values - ends[d.spans.station]
             near = np.flatnonzero(seen.values & (np.abs(offset) < LANES.surface_merge))
@@ -209,7 +205,6 @@ class Candidates(Rows, _MadeOf):
     valid: np.ndarray   # (I, M) False where there are fewer boundaries than M
     named: np.ndarray   # (I, M) what the layer says that a boundary separates, -1 where it does not
     wide: np.ndarray   # (I, M) as there, NaN of double lines
-    crown: np.ndarray   # (I, M) 1 where the road falls to both sides of a line, -1 where it falls across it to one, 0 where neither is known
     drift: np.ndarray   # (I, M, 2) m, how far left of those offsets a boundary lies where an interval begins and where it ends
     beside: np.ndarray   # (I, M, 2, 5) as `lanes_beside` gives it; NaN before
 
@@ -294,7 +289,7 @@ def _entries(boundaries, intervals, size, weights):
     d = intervals.sums(np.where(present, boundaries.d.values, 0.0)) / stations
     head, tail = (np.nan_to_num(boundaries.d.values[places] - d) for places in (intervals.begin, np.append(intervals.begin[1:], len(present)) - 1))
     return dict(interval=intervals.of, row=row, d=d, head=head, tail=tail, made=made_of,
-                wide=intervals.means(boundaries.wide.values), z=intervals.means(boundaries.z.values),
+                wide=intervals.means(boundaries.wide.values),
                 seen=np.minimum(intervals.sums(boundaries.seen.values) / size[intervals.of], 1.0), trust=np.where(made_of <= DOUBLE, trust, 1.0))
 
 
@@ -360,17 +355,5 @@ def _table(groups, boundaries, first, last):
     valid[:, [0, -1]] = True
     rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
     return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
-                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan), _crowns(left, column(groups["z"], np.nan)),
+                      valid, column(boundaries.named[groups["row"]], -1), column(groups["wide"], np.nan),
                       np.stack([column(groups[name], 0.0) for name in ("head", "tail")], axis=2), np.full((*shape, 2, 5), np.nan))
-
-
-def _crowns(d, z):
-    """`Candidates.crown` of boundaries at offsets (I, M) m with heights, m, by the nearest ones beside each that are a lane or more away."""
-    apart = d[:, None] - d[..., None]
-    falls = []
-    for across in (apart, -apart):
-        reach = np.where((across >= NEUTRAL.narrowest_lane) & np.isfinite(z)[:, None], across, FAR)
-        height = np.take_along_axis(z, reach.argmin(axis=2), axis=1)
-        falls.append((z - height) / reach.min(axis=2))
-    left, right = np.where(np.abs(falls) > LANES.least_fall, np.sign(falls), 0.0)
-    return np.where(left == right, np.maximum(left, 0.0), left * right)

@@ -422,7 +422,6 @@ def _boundary_costs(c, stops, first_direction, w):
     solid = (c.made_of == SOLID)[..., None]
     before = {kind: np.where(solid & (_stops_across(stops[way * stops[:, 3] > -EVIDENCE.stop_reach], middle) > 0)[..., None],
                              np.minimum(table, w.solid_at_stop), table) for kind, way in ((FIRST, first_direction), (SECOND, -first_direction))}
-    crowned = np.where(c.painted, np.array([0.0, *w.crowned])[c.crown.astype(int)], 0.0)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
@@ -431,7 +430,7 @@ def _boundary_costs(c, stops, first_direction, w):
                 misnamed = w.named * ((c.named >= 0) & (c.named != use) & (use != OTHER_LINE))
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
                 as_drawn = before[left] if {left, right} <= {FIRST, SECOND} else table
-                cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed + crowned * (use == CENTRE_LINE)) \
+                cost[:, :, left, right] = scale * (as_drawn[:, :, use] + wrong + misnamed) \
                     + w.split_stop * stopped * (use == CENTRE_LINE) + w.outer_stopped * outer_alone.get(left, 0.0) * (left == right)
     # other lines may be none, and what else lies where nobody drives bounds nothing
     cost[:, :, REST_FIRST, REST_FIRST] = cost[:, :, REST_SECOND, REST_SECOND] = scale * np.where(

@@ -43,9 +43,6 @@ class EstimateWeights:
     bare: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     bare_too: float = 0.7   # of the other border of a strip between lanes, one border of which has no line: half of them have none either
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)   # that are the border of a hatched area
-    # of a border between the directions, against one between lanes, where the road falls to both sides of it, as at one in three of the former and
-    # one in ten of the latter, and where it falls across it to one side
-    crowned: tuple[float, float] = (float(np.log(0.1 / 0.35)), float(np.log(0.9 / 0.65)))
     named: float = 3.0   # of a line that separates something else than who drew or confirmed it says
     stroke: float = 3.0   # m of paint that strokes of symbols have too
     long_line: float = 25.0   # m of paint that make a line sure

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.features import MARKINGS, ROAD_EDGES, Features
+from lanewright.core.common.features import MARKINGS, Features
 from lanewright.core.countries.traffic_side import side_of_traffic
 from lanewright.core.markings.cross_section.roads import usual_side
 from lined_streets import EAST, HEIGHT, NORTH, Street, middle
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import Point, Polygon
 
 
 def two_lanes(**drive):
@@ -236,35 +236,6 @@ def test_a_strip_between_solid_lines_that_no_lane_could_be_entered_through_parts
             street.paint(side * (middle + 3.6 * number), kind="", pattern="dashed")
     assert {round(offset, 1): way for offset, way in ways(street).items()} == {
         round(side * (middle + 3.6 * (number + 0.5)), 1): -side for side in (1, -1) for number in range(lanes)}
-
-
-FOUR, TWO = (-6.2, -3.1, 0.0, 3.1, 6.2), (-3.1, 0.0, 3.1)
-
-
-@pytest.mark.parametrize("lines, crown, fall, ways_from_right", [
-    (FOUR, 0.0, 0.02, (1, 1, -1, -1)), (FOUR, 6.2, 0.02, (1, 1, 1, 1)), (FOUR, 0.0, 0.012, (1, 1, 1, 1)), (FOUR, 0.0, -0.02, (1, 1, 1, 1)),
-    (TWO, 0.0, 0.02, (1, -1)), (TWO, 0.0, 0.0, (1, -1)), (TWO, 3.1, 0.02, (1, 1)), (TWO, -3.1, 0.02, (1, 1))])
-def test_directions_part_where_the_road_falls_to_both_sides_rather_than_where_it_falls_to_one(lines, crown, fall, ways_from_right):
-    """Lanes between dashed lines alone, one right of the middle driven. A road lowest in its middle, or nearly level, tells nothing."""
-    street = Street(length=150.0, vehicle=-1.55)
-    for offset in lines:
-        street.paint(offset, pattern="dashed", z=HEIGHT - fall * abs(offset - crown))
-    street.frame.crs = "EPSG:32632"
-    assert tuple(ways(street)[offset + 1.55] for offset in lines[:-1]) == ways_from_right
-
-
-@pytest.mark.parametrize("fall, far_lane", [(0.025, -1), (0.0, 1)])
-def test_a_curb_shows_that_the_road_falls_to_its_side_too(fall, far_lane):
-    """Three lanes between curbs, highest between the middle lane and the far one, beyond which nothing but the curb lies."""
-    street, edges = Street(length=150.0, vehicle=-3.1), Features("LineStringZ", ROAD_EDGES)
-    for offset in (-1.55, 1.55):
-        street.paint(offset, pattern="dashed", z=HEIGHT - fall * abs(offset - 1.55))
-    along = np.arange(5.0, 145.0)
-    for chain, (offset, side) in enumerate(((-4.65, "right"), (4.65, "left"))):
-        places = street.places(along, np.full(len(along), offset))
-        edges.add(LineString(np.c_[places, np.full(len(along), HEIGHT - fall * abs(offset - 1.55))]), road=0, side=side, kind="main", edge="curb",
-                  status="measured", chain=chain)
-    assert ways(street, edges=edges) == {-3.1: 1, 0.0: 1, 3.1: far_lane}
 
 
 @pytest.mark.parametrize("crs, vehicle, station, way", [("", -1.75, 10.0, -1), ("", -1.75, 105.0, 1), ("", 1.75, 105.0, 1),
