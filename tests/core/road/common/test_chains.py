@@ -9,7 +9,7 @@ from lanewright.core.road.common.tracking import curb_chains
 AUTOMATIC = CurbLimits.of(0.0, 0.0, 0.05, 60.0)
 
 
-def curbs(*chains, height=0.04, limits=AUTOMATIC, width=0.25):
+def curbs(*chains, height=0.04, limits=AUTOMATIC, width=0.25, run=0.0):
     """(start, end) of those of some chains (from, to, m of scatter, m aside) of steps of a low curb that are taken for a curb."""
     s = np.concatenate([np.arange(a, b + 0.01, width) for a, b, *_ in chains])
     label = np.concatenate([np.full(len(np.arange(a, b + 0.01, width)), k) for k, (a, b, *_) in enumerate(chains)])
@@ -17,7 +17,7 @@ def curbs(*chains, height=0.04, limits=AUTOMATIC, width=0.25):
     ones = np.ones(len(s))
     # every other step lies out by twice the distance of each from the chord of its neighbours
     u = 3.5 + aside + 0.5 * scatter * (-1.0) ** np.rint(s / width)
-    steps = CurbSteps(profile=np.rint(s / width).astype(int), s=s, u=u, h=0 * s, skew=0 * s, height=height * ones, run=0 * s,
+    steps = CurbSteps(profile=np.rint(s / width).astype(int), s=s, u=u, h=0 * s, skew=0 * s, height=height * ones, run=run * ones,
                       noise=0.003 * ones, scanner_noise=0.003 * ones, support=50 * ones, behind=20 * ones, hidden=0 * s)
     return [(chain.start, chain.end) for chain in curb_chains(steps, label, width, limits)]
 
@@ -44,3 +44,8 @@ def test_who_asks_for_a_height_gets_no_lower_curb():
 def test_two_steps_alone_do_not_show_that_they_lie_in_line():
     assert curbs((0.0, 6.0, 0.0, 0.0), (8.0, 8.5, 0.0, 0.0), height=0.12, width=0.5) == [(0.0, 6.0)]
     assert curbs((0.0, 6.0, 0.0, 0.0), (8.0, 9.0, 0.0, 0.0), height=0.12, width=0.5) == [(0.0, 6.0), (8.0, 9.0)]
+
+
+def test_a_sloped_curb_is_ten_metres_long_or_none():
+    """The edge of worn cobbles or of a track is as straight over a few metres."""
+    assert curbs((0.0, 9.0, 0.002, 0.0), (20.0, 31.0, 0.002, 0.0), (40.0, 51.0, 0.015, 0.0), height=0.1, run=0.1) == [(20.0, 31.0)]
