@@ -24,12 +24,17 @@ MORPHOLOGY_CHUNK = 100.0   # derived: m of road looked at together
 
 
 def are_compound(s: np.ndarray, d: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """(K,) bool, which clusters may be several markings: so long and so broad that they are no arrow or letter, and more than a line or a bar.
+    """(K,) bool, which clusters are so large that they may be several markings.
 
     s, d : (N,) int, units of 0.1 mm, of points one cluster after the other; starts : (K,) int, where each begins
     """
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (s, d)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
+    return _of_several(length, breadth)
+
+
+def _of_several(length, breadth):
+    """Whether what is so long and so broad, m, is no arrow or letter, and more than a line or a bar."""
     return (length >= COMPOUNDS.compound_length) & (breadth >= COMPOUNDS.compound_breadth) \
         | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_run_across)
 
@@ -55,7 +60,7 @@ def _parts(cells):
     """(K,) the part of every cell, numbered from 0; cells without gaps between tracks of the scan, sorted along the road."""
     size = CELL_UNITS * COORDINATE_SCALE
     even, width = even_strip(cells)
-    if even.all() and width * size <= COMPOUNDS.max_width_alone:
+    if even.all() and width * size <= COMPOUNDS.max_width_alone or not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
         return np.zeros(len(cells), np.int64)
     parts, count = np.full(len(cells), -1), 0
     for window, min_length in COMPOUNDS.strip_windows:
