@@ -84,6 +84,7 @@ class COMPOUNDS:
     width_tolerance: int = 2   # cells across by which it may be uneven
     max_width_alone: float = 0.34   # m of an even strip with nothing beside it; a double line is broader
     min_length_beside_bar: float = 1.0   # m along the road: what is shorter is nothing but a bar
+    ragged_rim: float = 0.12   # m that a bar may reach farther along the road at a place; the tip of an arrow is longer
     max_paint_gap: float = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
     max_scan_gap: float = 0.40   # m between scan lines, closed
     min_stop_line_piece: float = 0.8   # m across: a row of shorter blocks is a give-way line

@@ -15,7 +15,7 @@ from ...common.arrays import linked_groups, members_of, overlapping_pairs, stret
 from ...common.parallel import check_cancelled
 from ...lazy import cv2
 from ...survey.store.records import COORDINATE_SCALE
-from ..road_grid import CELL_UNITS, filled_between_tracks, occupied, track_reach
+from ..road_grid import CELL_SIZE, CELL_UNITS, closed_mask, filled_between_tracks, occupied, track_reach
 from ..weights import CLASSES, COMPOUNDS
 from .classify import columns_of
 from .shape import Shape
@@ -30,7 +30,7 @@ def are_compound(s: np.ndarray, d: np.ndarray, starts: np.ndarray) -> np.ndarray
     """
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (s, d)]
     length, breadth = (extent * COORDINATE_SCALE for extent in ranges)
-    return _of_several(length, breadth)
+    return _of_several(length, breadth) | (length >= COMPOUNDS.min_length_beside_bar) & (breadth >= COMPOUNDS.min_stop_line_piece)
 
 
 def _of_several(length, breadth):
@@ -60,8 +60,10 @@ def _parts(cells):
     """(K,) the part of every cell, numbered from 0; cells without gaps between tracks of the scan, sorted along the road."""
     size = CELL_UNITS * COORDINATE_SCALE
     even, width = even_strip(cells)
-    if even.all() and width * size <= COMPOUNDS.max_width_alone or not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
+    if even.all() and width * size <= COMPOUNDS.max_width_alone:
         return np.zeros(len(cells), np.int64)
+    if not _of_several(*(np.ptp(cells, axis=0) * size).tolist()):
+        return bar_with_lines(cells)
     parts, count = np.full(len(cells), -1), 0
     for window, min_length in COMPOUNDS.strip_windows:
         rest = np.flatnonzero(parts < 0)
@@ -82,9 +84,14 @@ def _parts(cells):
     for _, bar in members_of(np.where(parts >= before, parts, -1)):
         complete_bar(parts, bar, turned, along)
     if not count:
-        return np.zeros(len(cells), np.int64)
+        return bar_with_lines(cells)
     rest = np.flatnonzero(parts < 0)
     pieces = _linked(cells[rest], COMPOUNDS.max_scan_gap / size, 3.0)
+    number = int(pieces.max(initial=-1))
+    for _, members in members_of(pieces):
+        inner = bar_with_lines(cells[rest[members]])
+        pieces[members[inner > 0]] = number + inner[inner > 0]
+        number += int(inner.max())
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
     large = areas >= COMPOUNDS.min_leftover_area
     later = np.where(large, count + np.cumsum(large) - 1, -1)
@@ -260,7 +267,8 @@ def _bars(column):
     return np.column_stack([a, b])[(gap <= COMPOUNDS.max_stop_line_gap) & (np.maximum(broad[a], broad[b]) >= COMPOUNDS.min_stop_line_piece)]
 
 
-# Strips along the road and bars across it, as lines and stop lines are, with what touches them.
+# Bars across the road, as stop lines are, and the lines that end at them. Such a cluster is short, so the bar is known by its own form: as thick as
+# stop lines are, full, and the line leaves its front or its rear.
 
 
 def even_strip(cells: np.ndarray) -> tuple[np.ndarray, float]:
@@ -290,3 +298,32 @@ def complete_bar(parts: np.ndarray, bar: np.ndarray, turned: np.ndarray, along: 
     rows = np.sort(np.concatenate([bar, leftover]))
     inside, _ = even_strip(turned[rows])
     parts[rows[inside & (parts[rows] < 0)]] = parts[bar[0]]
+
+
+def bar_with_lines(cells: np.ndarray) -> np.ndarray:
+    """Cut a bar from the lines that end at it or cross it, if that is all there is. The head of an arrow is no bar: it is longer or has a tip.
+
+    `cells` : (K, 2) int, along the road and across it, different ones. Returns (K,) int, the part of every cell from 0 on.
+    """
+    undivided = np.zeros(len(cells), np.int64)
+    if not len(cells):
+        return undivided
+    mask, first = closed_mask(cells, (int(round(COMPOUNDS.max_scan_gap / CELL_SIZE)), int(round(COMPOUNDS.max_paint_gap / CELL_SIZE))))
+    reach = np.where(mask.any(axis=1), mask.shape[1] - mask[:, ::-1].argmax(axis=1) - mask.argmax(axis=1), 0)
+    broad = np.flatnonzero(reach * CELL_SIZE > COMPOUNDS.max_width_alone)
+    if not len(broad):
+        return undivided
+    front, rear = broad[0], broad[-1] + 1
+    across = np.flatnonzero(mask[front:rear].any(axis=0))
+    box = mask[front:rear, across[0]:across[-1] + 1]
+    thin, thick = CLASSES.stop_line_width
+    short = box.shape[1] * CELL_SIZE < COMPOUNDS.min_stop_line_piece
+    if not thin <= len(box) * CELL_SIZE <= thick or short or box.mean() < CLASSES.min_stop_line_fill:
+        return undivided
+    row, parts = cells[:, 0] - first[0], undivided.copy()
+    for side, length in ((row < front, front * CELL_SIZE), (row >= rear, (len(mask) - rear) * CELL_SIZE)):
+        if COMPOUNDS.ragged_rim < length < COMPOUNDS.min_length_beside_bar:
+            return undivided
+        if length > COMPOUNDS.ragged_rim:
+            parts[side] = parts.max() + 1
+    return parts

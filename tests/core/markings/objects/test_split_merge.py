@@ -71,6 +71,14 @@ def test_scan_lines_as_far_apart_as_paint_may_be_make_one_line_wherever_on_the_r
     assert len(np.unique(split(records[kept])[owner[kept] == 0])) == 1
 
 
+@pytest.mark.parametrize("breadth", [0.9, 1.4])
+def test_what_wear_left_of_a_stop_line_is_cut_from_the_dash_before_it(breadth):
+    records, owner = paint((0, 0.4, 0.0, breadth), (-4.0, 0.0, -0.075, 0.075))
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.98 and share_together(labels, owner, 1) > 0.98
+
+
 def test_a_stop_line_takes_what_wear_left_between_its_front_and_its_rear():
     """Its rear is worn through beside a piece that is no run of its own."""
     records, owner = paint((0, 0.5, 0.15, 3.6), (0.5, 4.5, -0.075, 0.15))
@@ -79,6 +87,13 @@ def test_a_stop_line_takes_what_wear_left_between_its_front_and_its_rear():
     labels = split(records)
     assert len(np.unique(labels)) == 2
     assert share_together(labels, owner, 0) > 0.95 and share_together(labels, owner, 1) > 0.95
+
+
+def test_a_stop_line_that_a_line_crosses_is_cut_from_both_its_ends():
+    records, owner = paint((0, 0.5, -0.6, 0.6), (0.5, 3.5, -0.06, 0.06), (-3.0, 0.0, -0.06, 0.06))
+    labels = split(records)
+    assert len(np.unique(labels)) == 3
+    assert min(share_together(labels, owner, number) for number in range(3)) > 0.98
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.08])
