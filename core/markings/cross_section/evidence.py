@@ -41,9 +41,7 @@ class Evidence:
     asphalt: np.ndarray | None   # (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     hatched: np.ndarray | None
     arrows: np.ndarray   # (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
-    # (S, 5) interval, least and greatest offset, how far ahead along the road the stop line lies, m, less than 0 behind, and which way lanes lead to
-    # it: 1 along the road, -1 against it, 0 where as many lines lie before it as behind
-    stops: np.ndarray
+    stops: np.ndarray   # (S, 4) interval, least and greatest offset, and how far ahead along the road the stop line lies, m, less than 0 behind
     divided: np.ndarray   # (I,) bool, whether the road is one carriageway of two
     bare: np.ndarray   # (I,) bool, where it was driven between two borders without any paint
     own: int | None = None   # how many of the passes are the road's own; None for all
@@ -178,7 +176,7 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     count = np.add.reduceat(driven_there, candidates.first, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         offsets = np.where(2 * count >= size, np.add.reduceat(np.where(driven_there, driven, 0.0), candidates.first, axis=1) / count, np.nan)
-    stops = np.empty((0, 5)) if markings is None else _stop_lines(candidates, s, markings, road)
+    stops = np.empty((0, 4)) if markings is None else _stop_lines(candidates, s, markings, road)
     without_paint = np.zeros(len(size), bool) if bare is None else np.add.reduceat(bare, candidates.first) * 2 > size
     return Evidence(offsets, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
                     _divided(candidates, offsets, directions, of_road), without_paint, of_road)
@@ -235,11 +233,10 @@ def _stop_lines(candidates, s, markings, road):
         near = np.flatnonzero(np.abs(ahead) <= SECTIONS.max_dash_gap)
         between = (candidates.left[near] > low - LANES.stop_margin) & (candidates.right[near] < high + LANES.stop_margin)
         lines = (candidates.painted[near] & between).sum(axis=1)
-        before, behind = (lines[side * ahead[near] > 0].max(initial=0) for side in (1, -1))
         if lines.any():
             ahead -= ahead[near[np.lexsort((np.abs(ahead[near]), -lines))[0]]]
-        stops += [(k, low, high, ahead[k], np.sign(before - behind)) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
-    return np.array(stops).reshape(-1, 5)
+        stops += [(k, low, high, ahead[k]) for k in np.flatnonzero(np.abs(ahead) <= EVIDENCE.approach).tolist()]
+    return np.array(stops).reshape(-1, 4)
 
 
 # Hatched areas: where nobody drives, and the borders that bound the lanes beside.

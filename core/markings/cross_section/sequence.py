@@ -173,8 +173,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
             alike = max(split - 1, 0) + max(number - split - 1, 0)
             unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
             driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, width_each, number, split, first_direction, w)) \
-                + _arrow_cost(arrows, width_each, number, split, first_direction, begin, w) \
-                + w.stop_behind * _lanes_behind(at_stop, width_each, number, split, first_direction, begin)
+                + _arrow_cost(arrows, width_each, number, split, first_direction, begin, w)
             if kind in TWO_WAY:
                 driven += w.split_stop * _stops_across(at_stop, begin - split * width_each)
             better = driven < cost[kind]
@@ -278,28 +277,17 @@ def _at_stop(stops):
 def _lanes_stopped(stops, left, right, lane_width):
     """(I, M, M) how much of a lane lies under stop lines, 1 at most, in the strips between `left` and `right`, m."""
     share = np.zeros(np.broadcast_shapes(left.shape, right.shape))
-    for interval, low, high, *_ in stops:
+    for interval, low, high, _ in stops:
         k = int(interval)
         under = np.minimum(left[k], high - LANES.stop_margin) - np.maximum(right[k], low + LANES.stop_margin)
         share[k] = np.maximum(share[k], np.clip(under / lane_width, 0.0, 1.0))
     return share
 
 
-def _lanes_behind(stops, each, number, split, first_direction, d_left):
-    """(I, M, M) how many lanes of strips, `split` of them of the first direction, have a stop line across them that they lead away from."""
-    count = np.zeros(each.shape)
-    for interval, low, high, _, way in stops:
-        k = int(interval)
-        for lane in range(number):
-            middle = d_left[k] - (lane + 0.5) * each[k]
-            count[k] += (middle > low) & (middle < high) & (way * first_direction * (1 if lane < split else -1) < 0)
-    return count
-
-
 def _stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
     """(I, ...) how many stop lines, as in Evidence, cross the border between the two directions, which lies at `divider`, (I, ...) m."""
     number = np.zeros(divider.shape)
-    for interval, low, high, *_ in stops:
+    for interval, low, high, _ in stops:
         k = int(interval)
         number[k] += (divider[k] > low + LANES.stop_margin) & (divider[k] < high - LANES.stop_margin)
     return number

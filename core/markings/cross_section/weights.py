@@ -87,7 +87,6 @@ class EstimateWeights:
     wrong_side: float = 8.0   # of oncoming traffic on the near side
     # of a solid line between lanes before their stop line, whichever way they lead, where it is not to be crossed
     solid_at_stop: float = _costs(0.6)[0]
-    stop_behind: float = 3.0   # of a lane that leads away from a stop line across it
     rest_at_stop: float = 4.0   # of a stop line as broad as a lane where no lane is
     # of two lanes beside each other that lead the same way, of which the outer one alone has a stop line: so for one in twenty
     outer_stopped: float = 3.0

@@ -236,19 +236,3 @@ def test_a_strip_between_solid_lines_that_no_lane_could_be_entered_through_parts
             street.paint(side * (middle + 3.6 * number), kind="", pattern="dashed")
     assert {round(offset, 1): way for offset, way in ways(street).items()} == {
         round(side * (middle + 3.6 * (number + 0.5)), 1): -side for side in (1, -1) for number in range(lanes)}
-
-
-@pytest.mark.parametrize("crs, vehicle, station, way", [("", -1.75, 10.0, -1), ("", -1.75, 105.0, 1), ("", 1.75, 105.0, 1),
-                                                        ("EPSG:32632", 1.75, 10.0, -1), ("EPSG:32755", -1.75, 10.0, -1)])
-def test_no_lane_leads_away_from_the_stop_line_across_it(crs, vehicle, station, way):
-    """Two lanes with dashes between them, one of which was driven; the other one has a stop line where the lines end.
-
-    Without one they lead apart, but alike where the driven lane is that of overtaking in the country.
-    """
-    street, stops = Street(length=120.0, vehicle=vehicle), Features("PolygonZ", MARKINGS)
-    street.frame.crs = crs
-    for offset, pattern in ((3.5, "solid"), (0.0, "dashed"), (-3.5, "solid")):
-        street.paint(offset, 12.0, 103.0, pattern=pattern)
-    corners = street.places(np.array([station, station, station + 0.5, station + 0.5]), -np.sign(vehicle) * np.array([0.1, 3.4, 3.4, 0.1]))
-    stops.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "stop", "use": "other"})
-    assert ways(street, markings=stops) == {vehicle: 1, -vehicle: way}
